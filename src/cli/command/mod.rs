@@ -1,0 +1,1 @@
+//! One file per command. Each has `Arguments` and `run(&Arguments) -> CommandResult`.

@@ -1,0 +1,27 @@
+//! The document that labs exchange: samples, instruments, lights, references, measurements as rows of acquisitions,
+//! models, provenance; and what follows from it alone: the reduction of a spectrum to the fitted number, the
+//! prediction of a model, its residuals.
+//!
+//! *May use:* `terms`, `quantity`. No HDF5, no files.
+//!
+//! *Invariant:* prediction, residual and reduction are defined here, once; whoever fits, validates or draws uses them.
+
+mod document;
+mod id;
+mod instrument;
+mod light;
+mod measurement;
+mod model;
+mod place;
+mod provenance;
+mod sample;
+
+pub use document::{Document, DocumentError};
+pub use id::{Id, IdError};
+pub use instrument::Instrument;
+pub use light::{Light, LightSpectrum};
+pub use measurement::{Acquisition, Derivation, Excitation, Measurement, Role, ShapeError};
+pub use model::{FittedParameter, FittedTerm, Model, Residuals, Separability};
+pub use place::Place;
+pub use provenance::{Assumption, InputFile, Notice, Provenance, Receipt, Step};
+pub use sample::{Sample, WhiteReference};

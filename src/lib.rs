@@ -1,0 +1,15 @@
+//! `bbrf`: bispectral bidirectional measurements of fluorescent surfaces, as a file standard on HDF5, importers, fits,
+//! a validator and pictures.
+//!
+//! The house, each room using only rooms above it:
+//!
+//! - [`quantity`]: what a number means: directions, wavelengths, typed quantities, uncertainty, flags.
+//! - [`terms`]: one physical term each: value and exact derivatives, stable everywhere.
+//! - [`dataset`]: the document that labs exchange.
+
+pub mod dataset;
+pub mod quantity;
+pub mod terms;
+
+#[cfg(feature = "write")]
+pub mod cli;

@@ -1,0 +1,5 @@
+//! The `bbrf` command.
+
+fn main() -> std::process::ExitCode {
+    bbrf::cli::run()
+}

@@ -1,0 +1,25 @@
+//! What a number means: directions, wavelength axes with their bandpass, typed quantities and their conversions,
+//! uncertainty, and the reasons why a value is missing.
+//!
+//! *May use:* no other room.
+//!
+//! *Invariant:* nothing here has a default. What a source does not say is `unstated`, and a conversion that needs it
+//! refuses.
+
+mod angle;
+mod convert;
+mod direction;
+mod flag;
+mod kind;
+mod uncertainty;
+mod wavelength;
+
+pub use angle::{cos_deg, sin_deg};
+pub use convert::{ConversionRefused, Quotient, ratio_to_reference};
+pub use direction::{Direction, DirectionError, Geometry, HalfAngles, SignHabit};
+pub use flag::{Flag, Flags};
+pub(crate) use kind::named;
+pub use kind::{Basis, NormalisedAt, Part, Quantity, QuantityKind, Reference, ReferenceLight, UnknownName};
+pub(crate) use uncertainty::rows_plain;
+pub use uncertainty::{Component, CorrelatedOver, Uncertainty};
+pub use wavelength::{Band, Bandpass, BandpassShape, EmissionAxis, WavelengthAxis, WavelengthError};

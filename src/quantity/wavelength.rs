@@ -1,0 +1,144 @@
+//! Wavelength axes with their bandpass, and bands.
+
+use serde::{Deserialize, Serialize};
+
+/// The shape of a slit function.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum BandpassShape {
+    /// Triangular.
+    Triangular,
+    /// Rectangular.
+    Rectangular,
+    /// Gaussian.
+    Gaussian,
+    /// The source does not say.
+    Unstated,
+}
+
+/// How wide the instrument looks at each wavelength. Bandpass and step are two different numbers.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(tag = "status", rename_all = "kebab-case")]
+pub enum Bandpass {
+    /// The source does not say.
+    Unstated,
+    /// Stated by the source.
+    Stated {
+        /// Full width at half maximum, nm: one number for all wavelengths, or one for each.
+        fwhm_nm: Vec<f64>,
+        /// Shape of the slit function.
+        shape: BandpassShape,
+    },
+}
+
+/// Ascending nominal wavelengths with their bandpass.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+pub struct WavelengthAxis {
+    /// Nominal centre wavelengths in air, nm, strictly ascending.
+    pub nm: Vec<f64>,
+    /// Bandpass of the instrument on this axis.
+    pub bandpass: Bandpass,
+}
+
+/// Why a list of numbers is not a wavelength axis.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum WavelengthError {
+    /// A wavelength is not a positive number.
+    #[error("wavelength {value} nm at index {index}; expected a positive finite number")]
+    NotPositive {
+        /// Index in the list.
+        index: usize,
+        /// The number found, nm.
+        value: f64,
+    },
+    /// The list does not ascend.
+    #[error("wavelength {value} nm at index {index} follows {previous} nm; expected strictly ascending wavelengths")]
+    NotAscending {
+        /// Index in the list.
+        index: usize,
+        /// The number before it, nm.
+        previous: f64,
+        /// The number found, nm.
+        value: f64,
+    },
+}
+
+impl WavelengthAxis {
+    /// An axis from nominal wavelengths in nm.
+    ///
+    /// # Errors
+    /// [`WavelengthError`] unless the wavelengths are positive, finite and strictly ascending.
+    pub fn new(nm: Vec<f64>, bandpass: Bandpass) -> Result<Self, WavelengthError> {
+        for (index, &value) in nm.iter().enumerate() {
+            if !(value.is_finite() && value > 0.0) {
+                return Err(WavelengthError::NotPositive { index, value });
+            }
+            if index > 0 && value <= nm[index - 1] {
+                return Err(WavelengthError::NotAscending { index, previous: nm[index - 1], value });
+            }
+        }
+        Ok(Self { nm, bandpass })
+    }
+}
+
+/// A band of emission wavelengths, both ends included.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+pub struct Band {
+    /// Lower end, nm.
+    pub from_nm: f64,
+    /// Upper end, nm.
+    pub to_nm: f64,
+}
+
+impl Band {
+    /// True where the wavelength lies in the band.
+    #[must_use]
+    pub fn contains(&self, nm: f64) -> bool {
+        (self.from_nm..=self.to_nm).contains(&nm)
+    }
+}
+
+impl std::fmt::Display for Band {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{}-{}", self.from_nm, self.to_nm)
+    }
+}
+
+/// The emission axis of a measurement: wavelengths, or one band whose spectrum was summed.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(tag = "kind", rename_all = "kebab-case")]
+pub enum EmissionAxis {
+    /// One value per wavelength.
+    Wavelengths(WavelengthAxis),
+    /// One value for a band; `None` where the source does not say which.
+    Band {
+        /// The band, if stated.
+        band: Option<Band>,
+    },
+}
+
+impl EmissionAxis {
+    /// How many values an acquisition has on this axis.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        match self {
+            Self::Wavelengths(axis) => axis.nm.len(),
+            Self::Band { .. } => 1,
+        }
+    }
+
+    /// True for an axis without a single wavelength.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// The wavelengths in nm, if the axis has any.
+    #[must_use]
+    pub fn wavelengths(&self) -> Option<&[f64]> {
+        match self {
+            Self::Wavelengths(axis) => Some(&axis.nm),
+            Self::Band { .. } => None,
+        }
+    }
+}
