@@ -8,6 +8,7 @@
 //! - [`dataset`]: the document that labs exchange.
 
 pub mod dataset;
+pub mod fit;
 pub mod quantity;
 pub mod terms;
 
