@@ -14,16 +14,16 @@
 
 mod curvature;
 mod geometry_set;
-// mod identifiability;
+mod identifiability;
 mod linear;
-// mod measurement;
+mod measurement;
 mod outcome;
-// mod separability;
+mod separability;
 mod solve;
 mod statistics;
 
 pub use geometry_set::{GeometrySet, SetError};
-// pub use measurement::{FitError, FitOptions, fit_measurement};
+pub use measurement::{FitError, FitOptions, fit_measurement};
 pub use outcome::{BandFit, Fit, Stop};
-// pub use separability::separability;
+pub use separability::separability;
 pub use solve::{DataError, Fitter, Terms};
