@@ -2,8 +2,8 @@
 //! and benches.
 #![allow(dead_code, clippy::unwrap_used)]
 
-use bbrf::quantity::{Geometry, Reference, SignHabit};
-use bbrf::terms::{Denominator, Distribution, Term, TorranceSparrow};
+use bbrf::quantity::{Geometry, HalfAngles, Reference, SignHabit};
+use bbrf::terms::{Denominator, Distribution, Term, TorranceSparrow, diffuse_factor, fresnel, specular_factor};
 use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt};
 use nalgebra::storage::Owned;
 use nalgebra::{DVector, Dyn, Matrix4, OMatrix, U4, Vector4};
@@ -116,9 +116,28 @@ pub fn measure(truth: &Truth, grid: &[Geometry], relative: f64, random: &mut Ran
         .unzip()
 }
 
+/// What the peer may keep of the geometries: half-vector angles and angular factors are not made anew in every
+/// evaluation, as a careful user of the crate would have it.
+pub struct Prepared {
+    pub half: HalfAngles,
+    pub diffuse: f64,
+    pub masked: f64,
+}
+
+pub fn prepare(grid: &[Geometry]) -> Vec<Prepared> {
+    grid.iter()
+        .map(|geometry| {
+            let half = geometry.half_angles();
+            let diffuse = diffuse_factor(geometry, &Reference::None).unwrap();
+            let masked = specular_factor(Denominator::CosThetaI, geometry, &half, &Reference::None).unwrap();
+            Prepared { half, diffuse, masked }
+        })
+        .collect()
+}
+
 /// The peer's problem: albedo and intensity, ln roughness, ln(n - 1), as its documentation has it.
 pub struct Peer<'a> {
-    pub grid: &'a [Geometry],
+    pub grid: &'a [Prepared],
     pub values: &'a [f64],
     pub sigma: &'a [f64],
     pub p: Vector4<f64>,
@@ -146,26 +165,32 @@ impl LeastSquaresProblem<f64, Dyn, U4> for Peer<'_> {
     fn residuals(&self) -> Option<DVector<f64>> {
         let truth = self.truth();
         Some(DVector::from_fn(self.grid.len(), |k, _| {
-            (truth.evaluate(&self.grid[k]).0 - self.values[k]) / self.sigma[k]
+            let point = &self.grid[k];
+            let d = Distribution::GaussianHalfHeight.evaluate(&point.half, truth.roughness).value;
+            let f = fresnel(&point.half, truth.index_minus_one).value;
+            let predicted = truth.albedo * point.diffuse + truth.intensity * d * f * point.masked;
+            (predicted - self.values[k]) / self.sigma[k]
         }))
     }
 
     fn jacobian(&self) -> Option<OMatrix<f64, Dyn, U4>> {
         let truth = self.truth();
         let mut jacobian = OMatrix::<f64, Dyn, U4>::zeros(self.grid.len());
-        for (k, geometry) in self.grid.iter().enumerate() {
-            let by = truth.evaluate(geometry).1;
-            let log = [1.0, 1.0, truth.roughness, truth.index_minus_one];
-            for column in 0..4 {
-                jacobian[(k, column)] = by[column] * log[column] / self.sigma[k];
-            }
+        for (k, point) in self.grid.iter().enumerate() {
+            let d = Distribution::GaussianHalfHeight.evaluate(&point.half, truth.roughness);
+            let f = fresnel(&point.half, truth.index_minus_one);
+            let scaled = point.masked / self.sigma[k];
+            jacobian[(k, 0)] = point.diffuse / self.sigma[k];
+            jacobian[(k, 1)] = d.value * f.value * scaled;
+            jacobian[(k, 2)] = truth.intensity * d.by_log_roughness * f.value * scaled;
+            jacobian[(k, 3)] = truth.intensity * d.value * f.by_index * truth.index_minus_one * scaled;
         }
         Some(jacobian)
     }
 }
 
 /// The peer's chi-square and parameters from a start.
-pub fn peer_fit(grid: &[Geometry], values: &[f64], sigma: &[f64], start: &Truth) -> (f64, Truth) {
+pub fn peer_fit(grid: &[Prepared], values: &[f64], sigma: &[f64], start: &Truth) -> (f64, Truth) {
     let p = Vector4::new(start.albedo, start.intensity, start.roughness.ln(), start.index_minus_one.ln());
     let problem = Peer { grid, values, sigma, p };
     let (problem, report) = LevenbergMarquardt::new().with_tol(1e-10).minimize(problem);
