@@ -6,7 +6,9 @@
 //! - [`quantity`]: what a number means: directions, wavelengths, typed quantities, uncertainty, flags.
 //! - [`terms`]: one physical term each: value and exact derivatives, stable everywhere.
 //! - [`dataset`]: the document that labs exchange.
+//! - [`container`]: that document as an HDF5 file, read back to the bit.
 
+pub mod container;
 pub mod dataset;
 pub mod fit;
 pub mod quantity;
