@@ -6,9 +6,11 @@
 //! - [`quantity`]: what a number means: directions, wavelengths, typed quantities, uncertainty, flags.
 //! - [`terms`]: one physical term each: value and exact derivatives, stable everywhere.
 //! - [`dataset`]: the document that labs exchange.
+//! - [`report`]: figures and the HTML page.
 
 pub mod dataset;
 pub mod quantity;
+pub mod report;
 pub mod terms;
 
 #[cfg(feature = "write")]
