@@ -9,6 +9,7 @@
 //! - [`report`]: figures and the HTML page.
 
 pub mod dataset;
+pub mod fit;
 pub mod quantity;
 pub mod report;
 pub mod terms;
