@@ -21,12 +21,16 @@ struct Arguments {
 }
 
 #[derive(Debug, Subcommand)]
-enum Command {}
+enum Command {
+    Import(command::import::Arguments),
+}
 
 /// Runs the command with the arguments of the process.
 #[must_use]
 pub fn run() -> ExitCode {
     let arguments = Arguments::parse();
-    let outcome = match arguments.command {};
+    let outcome = match arguments.command {
+        Command::Import(arguments) => command::import::run(&arguments),
+    };
     exit::code(outcome)
 }
