@@ -15,7 +15,7 @@ const HEIGHT: f64 = 320.0;
 /// Room for ticks, label and legend below the plotting area.
 pub(super) const BELOW: f64 = 96.0;
 /// Error bars may reach this share of the range of the numbers beyond them; longer ones are cut at the frame.
-const BAR_SHARE: f64 = 0.25;
+const BAR_SHARE: f64 = 0.15;
 
 /// Measured points: one number per abscissa, with the half length of its error bar.
 #[derive(Debug, Clone, PartialEq)]

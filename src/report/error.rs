@@ -1,7 +1,9 @@
 //! Why a figure cannot be drawn.
 
+use crate::dataset::{ReduceError, TermsError, UnknownReduction};
+
 /// Why a figure cannot be drawn.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ReportError {
     /// There is no finite number to draw.
@@ -47,6 +49,38 @@ pub enum ReportError {
         /// How many cells are drawn at most.
         limit: usize,
     },
+    /// The measurement that a model was fitted to is not in the document.
+    #[error("model `{model}`: its measurement `{measurement}` is not in the document")]
+    NoMeasurement {
+        /// Which model.
+        model: String,
+        /// The id it gives.
+        measurement: String,
+    },
+    /// The model does not say how a spectrum became the fitted number.
+    #[error("model `{model}`: its reduction cannot be done again")]
+    Reduction {
+        /// Which model.
+        model: String,
+        /// Why.
+        source: UnknownReduction,
+    },
+    /// The fitted numbers cannot be formed again.
+    #[error("model `{model}`: its data cannot be formed again")]
+    Reduce {
+        /// Which model.
+        model: String,
+        /// Why.
+        source: ReduceError,
+    },
+    /// The model cannot be evaluated.
+    #[error("model `{model}`: it cannot be evaluated")]
+    Terms {
+        /// Which model.
+        model: String,
+        /// Why.
+        source: TermsError,
+    },
     /// The picture could not be encoded.
     #[error("{figure}: the PNG cannot be written: {reason}")]
     Png {
@@ -55,4 +89,17 @@ pub enum ReportError {
         /// What the encoder says.
         reason: String,
     },
+}
+
+impl ReportError {
+    /// The message with the messages of its causes, on one line.
+    pub(super) fn in_full(&self) -> String {
+        let mut text = self.to_string();
+        let mut cause = std::error::Error::source(self);
+        while let Some(error) = cause {
+            text.push_str(&format!(": {error}"));
+            cause = error.source();
+        }
+        text
+    }
 }

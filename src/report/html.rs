@@ -92,12 +92,14 @@ pub(super) fn escaped(text: &str) -> String {
     html
 }
 
-/// A number to six significant digits; `unknown` where it is not finite.
+/// A number to six significant digits without needless zeros; `unknown` where it is not finite.
 pub(super) fn number(value: f64) -> String {
     if !value.is_finite() {
         return "unknown".to_owned();
     }
-    significant(value, 6)
+    let text = significant(value, 6);
+    let is_plain = text.contains('.') && !text.contains('\u{b7}');
+    if is_plain { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
 }
 
 /// A value to the digit to which its standard uncertainty (two digits) is known.
@@ -138,7 +140,7 @@ mod tests {
     fn a_value_is_given_to_the_digit_that_is_known() {
         assert_eq!(value_and_uncertainty(1.015_113, 0.000_412), ("1.01511".to_owned(), "0.00041".to_owned()));
         assert_eq!(value_and_uncertainty(30.123, 2.5), ("30.1".to_owned(), "2.5".to_owned()));
-        assert_eq!(value_and_uncertainty(0.5, f64::NAN), ("0.500000".to_owned(), "unknown".to_owned()));
+        assert_eq!(value_and_uncertainty(0.5, f64::NAN), ("0.5".to_owned(), "unknown".to_owned()));
         assert_eq!(number(f64::NAN), "unknown");
         assert_eq!(number(1.5e-9), "1.50000·10⁻⁹");
     }

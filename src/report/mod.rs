@@ -6,6 +6,7 @@
 //! figure comes from anywhere but the document and its model.
 
 mod angle_map;
+mod angle_points;
 mod canvas;
 mod colours;
 mod curve;
@@ -18,14 +19,16 @@ mod html;
 mod map;
 mod page;
 mod scale;
+mod separability;
 mod spectrum;
 mod spline;
 
 pub use angle_map::AngleMap;
+pub use angle_points::AnglePoints;
 pub use curve::{Curve, CurveText, Points, dots_and_curve, line_in_band};
 pub use error::ReportError;
 pub use figure::Figure;
-pub use fitted::{AnglePoints, Drawn, fitted_figures};
+pub use fitted::{Drawn, fitted_figures};
 pub use histogram::histogram;
 pub use map::{angle_map, interpolated_map, residual_map};
 pub use page::{Pictures, page};

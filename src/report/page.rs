@@ -1,7 +1,7 @@
 //! One HTML page about a document: self-contained, without scripts, for light and dark screens.
 
 use super::html::{Html, escaped, number, value_and_uncertainty};
-use super::{Drawn, Figure};
+use super::{AnglePoints, Drawn, Figure, fitted_figures, measurement_figures};
 use crate::dataset::{Document, FittedParameter, FittedTerm, Measurement, Model, Provenance, Receipt, Sample};
 use crate::quantity::{EmissionAxis, Flag};
 
@@ -20,6 +20,19 @@ pub struct Pictures {
 }
 
 impl Pictures {
+    /// Draws everything that can be drawn of a document; what cannot is listed with the reason.
+    #[must_use]
+    pub fn of(document: &Document) -> Self {
+        let drawn = |model: &Model| match AnglePoints::of(document, model) {
+            Ok(points) => fitted_figures(document, model, &points),
+            Err(error) => Drawn { figures: Vec::new(), not_drawn: vec![error.in_full()] },
+        };
+        Self {
+            models: document.models.iter().map(drawn).collect(),
+            measurements: document.measurements.iter().map(|one| measurement_figures(document, one)).collect(),
+        }
+    }
+
     /// Every figure, models first.
     pub fn figures(&self) -> impl Iterator<Item = &Figure> {
         self.models.iter().chain(&self.measurements).flat_map(|drawn| &drawn.figures)

@@ -49,6 +49,7 @@ pub(crate) fn points() -> AnglePoints {
         measured: predicted.iter().enumerate().map(|(n, value)| value * (1.0 + NOISE * noise(n))).collect(),
         sigma: predicted.iter().map(|value| NOISE * value).collect(),
         predicted,
+        wavelength_nm: None,
     }
 }
 
