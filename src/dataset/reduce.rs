@@ -10,7 +10,7 @@ use std::str::FromStr;
 use ndarray::Array2;
 
 use super::{Document, Measurement};
-use crate::quantity::{Band, CorrelatedOver, EmissionAxis, Flags, Geometry, QuantityKind, Reference};
+use crate::quantity::{Band, CorrelatedOver, EmissionAxis, Flag, Flags, Geometry, QuantityKind, Reference};
 
 /// Luminous efficacy of radiation at 555 nm, lm/W.
 const LUMINOUS_EFFICACY: f64 = 683.002;
@@ -427,6 +427,11 @@ fn step(nm: &[f64], column: usize) -> f64 {
     (nm[after] - nm[before]) / (after - before) as f64
 }
 
+/// A dark signal on the floor, or a white one, is a weight all the same: the importer averaged it in.
+fn weighs(flags: Flags) -> bool {
+    flags.iter().all(|flag| flag == Flag::BelowDetection || !flag.excludes_from_fit())
+}
+
 /// What the perfect diffuser would have radiated, per row and wavelength; NaN where the reference is not usable.
 fn perfect_diffuser(document: &Document, measurement: &Measurement) -> Option<Array2<f64>> {
     let derivation = measurement.derivation.as_ref()?;
@@ -440,7 +445,8 @@ fn perfect_diffuser(document: &Document, measurement: &Measurement) -> Option<Ar
     let mean = |source: &Measurement, column: usize, select: &dyn Fn(usize) -> bool| {
         let values: Vec<f64> = (0..source.acquisitions.len())
             .filter(|&row| select(row))
-            .map(|row| usable(source, row, column))
+            .filter(|&row| weighs(source.flags_at(row, column)))
+            .map(|row| source.values[(row, column)])
             .filter(|value| value.is_finite())
             .collect();
         values.iter().sum::<f64>() / values.len() as f64
