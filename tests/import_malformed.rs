@@ -35,7 +35,10 @@ fn notices(document: &Document) -> String {
 /// A good report with one data line changed.
 fn with_line(nm: u32, change: impl Fn(&str) -> String) -> String {
     let start = format!("{nm:04}.");
-    good(1.0).split_inclusive('\n').map(|line| if line.starts_with(&start) { change(line) } else { line.into() }).collect()
+    good(1.0)
+        .split_inclusive('\n')
+        .map(|line| if line.starts_with(&start) { change(line) } else { line.into() })
+        .collect()
 }
 
 /// The first rows of a good report.

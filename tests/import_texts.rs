@@ -178,7 +178,8 @@ fn weak_light_is_missing_and_never_zero() {
 #[test]
 fn the_floor_is_flagged_and_kept() {
     let floor = |nm: f64| 1e-7 + (nm - 560.0).abs() * 1e-9;
-    let lit = move |scale: f64| move |nm: f64| f64::max(floor(nm), scale * 1e-2 * (-((nm - 550.0) / 20.0).powi(2)).exp());
+    let lit =
+        move |scale: f64| move |nm: f64| f64::max(floor(nm), scale * 1e-2 * (-((nm - 550.0) / 20.0).powi(2)).exp());
     let text = format!("{}{}{}", d5("00,0", lit(1.0)), d5("00,0", lit(0.7)), d5("00,0", lit(0.5)));
     let document = read(&text);
     let measurement = &document.measurements[0];

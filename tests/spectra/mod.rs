@@ -5,12 +5,12 @@ use std::fmt::Write;
 use std::path::PathBuf;
 
 /// Wavelengths of the PR-650, nm.
-pub fn grid() -> impl Iterator<Item = u32> {
+pub(crate) fn grid() -> impl Iterator<Item = u32> {
     (0..101).map(|index| 380 + 4 * index)
 }
 
 /// A number as the PR-650 prints it: `1.234E-05`.
-pub fn print(value: f64) -> String {
+pub(crate) fn print(value: f64) -> String {
     let text = format!("{value:.3e}");
     let (mantissa, exponent) = text.split_once('e').unwrap();
     let exponent: i32 = exponent.parse().unwrap();
@@ -19,12 +19,12 @@ pub fn print(value: f64) -> String {
 }
 
 /// A smooth spectrum: a broad emission around 550 nm with some light everywhere, times `scale`.
-pub fn bump(nm: f64, scale: f64) -> f64 {
+pub(crate) fn bump(nm: f64, scale: f64) -> f64 {
     scale * (1e-3 * (-((nm - 550.0) / 60.0).powi(2)).exp() + 2e-5)
 }
 
 /// The data rows of a D5 report.
-pub fn rows(spectrum: impl Fn(f64) -> f64, eol: &str) -> String {
+pub(crate) fn rows(spectrum: impl Fn(f64) -> f64, eol: &str) -> String {
     grid().fold(String::new(), |mut text, nm| {
         write!(text, "{nm:04}.,{}{eol}", print(spectrum(f64::from(nm)))).unwrap();
         text
@@ -32,44 +32,44 @@ pub fn rows(spectrum: impl Fn(f64) -> f64, eol: &str) -> String {
 }
 
 /// The integral that the instrument prints: 4 nm times the sum of the printed values.
-pub fn integral(spectrum: impl Fn(f64) -> f64) -> String {
+pub(crate) fn integral(spectrum: impl Fn(f64) -> f64) -> String {
     let sum: f64 = grid().map(|nm| print(spectrum(f64::from(nm))).parse::<f64>().unwrap()).sum();
     print(4.0 * sum)
 }
 
 /// A whole D5 report.
-pub fn d5(status: &str, spectrum: impl Fn(f64) -> f64 + Copy) -> String {
+pub(crate) fn d5(status: &str, spectrum: impl Fn(f64) -> f64 + Copy) -> String {
     format!("{status}\r\n{}\r\n{}", integral(spectrum), rows(spectrum, "\r\n"))
 }
 
 /// The report of a good radiance record.
-pub fn good(scale: f64) -> String {
+pub(crate) fn good(scale: f64) -> String {
     d5("00,0", |nm| bump(nm, scale))
 }
 
 /// A folder that is removed when it goes out of scope.
-pub struct Folder(tempfile::TempDir);
+pub(crate) struct Folder(tempfile::TempDir);
 
 impl Folder {
-    pub fn new() -> Self {
+    pub(crate) fn new() -> Self {
         Self(tempfile::tempdir().unwrap())
     }
 
     /// Writes a file and returns its path.
-    pub fn write(&self, name: &str, content: impl AsRef<[u8]>) -> PathBuf {
+    pub(crate) fn write(&self, name: &str, content: impl AsRef<[u8]>) -> PathBuf {
         let path = self.0.path().join(name);
         std::fs::create_dir_all(path.parent().unwrap()).unwrap();
         std::fs::write(&path, content).unwrap();
         path
     }
 
-    pub fn path(&self) -> PathBuf {
+    pub(crate) fn path(&self) -> PathBuf {
         self.0.path().to_path_buf()
     }
 }
 
 /// The shared data of the laboratory, where there are some beside the repository.
-pub fn shared() -> Option<PathBuf> {
+pub(crate) fn shared() -> Option<PathBuf> {
     let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../shared/data");
     if path.is_dir() {
         return Some(path);
