@@ -172,8 +172,9 @@ fn patterns_and_orders_give_the_manifests_document() {
 fn repeats_are_averaged_with_their_spread() {
     let folder = Folder::new();
     let mut rows = String::new();
-    let noise =
-        |seed: u32| move |nm: f64| bump(nm, 1.0) * (1.0 + 0.01 * (f64::from(seed) * 12.9898 + nm * 78.233).sin());
+    // A hash of seed and wavelength, uniform with a standard deviation of 1 %.
+    let uniform = |seed: u32, nm: f64| ((f64::from(seed) * 12.9898 + nm * 78.233).sin() * 43_758.545_3).rem_euclid(1.0);
+    let noise = |seed: u32| move |nm: f64| bump(nm, 1.0) * (1.0 + 0.01 * 12.0_f64.sqrt() * (uniform(seed, nm) - 0.5));
     for geometry in 0..10 {
         for repeat in 1..=3 {
             let name = format!("g{geometry}r{repeat}.txt");
@@ -184,9 +185,10 @@ fn repeats_are_averaged_with_their_spread() {
     let document = run(folder.write("m.csv", format!("{HEAD}{rows}{}", whites(&folder))));
     let scan = factor(&document);
     assert_eq!((scan.acquisitions.len(), scan.acquisitions[0].repeats), (10, 3));
-    // A sine of amplitude 1 % has a standard deviation of 0.7 %; the mean of three has 0.41 %.
-    let relative = scan.uncertainty.standard.as_ref().unwrap()[(4, 42)] / scan.values[(4, 42)];
-    assert!((0.002..0.008).contains(&relative), "{relative}");
+    // The mean of three has 1 % / sqrt(3) = 0.58 %, known from 26 degrees of freedom.
+    let sigma = scan.uncertainty.standard.as_ref().unwrap();
+    let relative: f64 = (0..10).map(|row| sigma[(row, 42)] / scan.values[(row, 42)]).sum::<f64>() / 10.0;
+    assert!((0.0042..0.0074).contains(&relative), "{relative}");
     let doubled = format!("{HEAD}g0r1.txt,sample,0,45,\ng0r2.txt,sample,0,45,\n");
     let error = fails(folder.write("doubled.csv", doubled));
     assert!(error.contains("line 4") && error.contains("`repeat`"), "{error}");
