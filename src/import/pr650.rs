@@ -349,16 +349,22 @@ impl<'a> Capture<'a> {
             let last = record.nm.last().copied();
             return Err(truncated(place, record.nm.len(), last, grid.count, &grid.describe()));
         }
+        let action = quality::look_up(record.quality.unwrap_or(0), record.place())?.action;
         if let Some((integral, line)) = integral {
-            record.check_integral(integral, line)?;
+            match (record.check_integral(integral, line), action) {
+                // The instrument itself doubts this record and its flag says so; the sum is one doubt more.
+                (Err(error), Action::KeepWithFlag(Flag::LowLight | Flag::Noisy)) => {
+                    record.doubts.push(error.to_string())
+                }
+                (result, _) => result?,
+            }
         }
         for (flags, value) in record.flags.iter_mut().zip(&record.values) {
             if *value <= LATER_MODEL_ZERO {
                 *flags = Flags::with(*flags, Flag::BelowDetection);
             }
         }
-        let place = record.place();
-        if let Action::KeepWithFlag(flag) = quality::look_up(record.quality.unwrap_or(0), place)?.action {
+        if let Action::KeepWithFlag(flag) = action {
             record.flag_all(flag);
         }
         Ok(())

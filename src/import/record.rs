@@ -55,6 +55,8 @@ pub(crate) struct Record {
     pub(crate) kind: QuantityKind,
     /// About the instrument.
     pub(crate) details: Details,
+    /// What is odd about it without making it useless.
+    pub(crate) doubts: Vec<String>,
     /// Luminance (or illuminance) that the input reports beside the spectrum, and where.
     pub(crate) luminance: Option<(f64, u64)>,
 }
@@ -77,6 +79,7 @@ impl Record {
             rejection: None,
             kind: QuantityKind::Unstated,
             details: Details::default(),
+            doubts: Vec::new(),
             luminance: None,
         }
     }

@@ -92,6 +92,9 @@ fn note_state(record: &Record, notes: &mut Notes) {
         let text = format!("{}: quality code {code}; the values are kept with a flag", record.label());
         notes.notice(record.place(), text);
     }
+    for doubt in &record.doubts {
+        notes.notice(record.place(), doubt.clone());
+    }
     note_precision(record, notes);
     note_luminance(record, notes);
 }

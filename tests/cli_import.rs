@@ -1,0 +1,43 @@
+//! `bbrf import` on the command line: exit status, messages, whole files or none. Writing depends on the container.
+
+mod spectra;
+
+use assert_cmd::Command;
+use predicates::prelude::PredicateBooleanExt;
+use predicates::str::contains;
+use spectra::{Folder, good};
+
+fn bbrf() -> Command {
+    Command::cargo_bin("bbrf").unwrap()
+}
+
+#[test]
+fn an_error_leaves_no_file() {
+    let folder = Folder::new();
+    let input = folder.write("overload.txt", "19,0\r\n");
+    let output = folder.path().join("out.bbrf");
+    let run = bbrf().arg("import").arg(input).arg("-o").arg(&output).assert();
+    run.code(2).stderr(contains("overload.txt").and(contains("overload, no data"))).stdout("");
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
+}
+
+#[test]
+fn a_wrong_key_is_a_wrong_call() {
+    let folder = Folder::new();
+    let input = folder.write("a.txt", good(1.0));
+    let output = folder.path().join("out.bbrf");
+    let run = bbrf().arg("import").arg(input).args(["--set", "quantty=1", "-o"]).arg(output).assert();
+    run.code(2).stderr(contains("`quantty`"));
+}
+
+#[test]
+fn the_receipt_is_printed_as_json() {
+    let folder = Folder::new();
+    let input = folder.write("a.txt", good(1.0));
+    let output = folder.path().join("out.bbrf");
+    let run = bbrf().arg("import").arg(input).args(["--json", "-o"]).arg(&output).assert().success();
+    let json: serde_json::Value = serde_json::from_slice(&run.get_output().stdout).unwrap();
+    assert_eq!(json["schema"], "bbrf:import:1");
+    assert_eq!(json["receipts"][0]["inputs"][0]["sha256"].as_str().unwrap().len(), 64);
+    assert!(output.is_file());
+}
