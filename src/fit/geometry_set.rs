@@ -41,7 +41,6 @@ pub(super) struct Segment {
 #[derive(Debug, Clone)]
 pub struct GeometrySet {
     pub(super) distribution: Distribution,
-    pub(super) denominator: Denominator,
     /// Input index of each sorted point.
     pub(super) order: Vec<usize>,
     /// Input indices of geometries where a term is undefined; they take no part.
@@ -108,15 +107,10 @@ impl GeometrySet {
             return Err(SetError::NothingDefined(geometry.len()));
         }
         points.sort_by(|a, b| a.half.phi.total_cmp(&b.half.phi));
-        Ok(Self::from_points(&points, undefined, distribution, denominator))
+        Ok(Self::from_points(&points, undefined, distribution))
     }
 
-    fn from_points(
-        points: &[Point],
-        undefined: Vec<usize>,
-        distribution: Distribution,
-        denominator: Denominator,
-    ) -> Self {
+    fn from_points(points: &[Point], undefined: Vec<usize>, distribution: Distribution) -> Self {
         let segments = segments(points);
         let (halves, half_of) = distinct_halves(points);
         let masked: Vec<f64> = points.iter().map(|point| point.masked).collect();
@@ -126,7 +120,6 @@ impl GeometrySet {
         let grid = Grid::new(distribution, smallest_angle, &segments, &halves, &half_of, &masked);
         Self {
             distribution,
-            denominator,
             order: points.iter().map(|point| point.input).collect(),
             inputs: points.len() + undefined.len(),
             undefined,

@@ -114,7 +114,9 @@ fn load(model: &str) -> Result<Bands, miette::Report> {
     let document = container::open_verified(path.as_ref()).map_err(|error| miette!("{error}"))?;
     let ids = || document.models.iter().map(|m| m.id.to_string()).collect::<Vec<_>>().join(", ");
     let model = match (id, document.models.as_slice()) {
-        (Some(id), _) => document.model(id).ok_or_else(|| miette!("{path}: no model `{id}`; the file holds: {}", ids()))?,
+        (Some(id), _) => {
+            document.model(id).ok_or_else(|| miette!("{path}: no model `{id}`; the file holds: {}", ids()))?
+        }
         (None, [one]) => one,
         (None, []) => return Err(miette!("{path}: holds no model; make one with `bbrf fit {path} -o OUT`")),
         (None, _) => return Err(miette!("{path}: holds several models ({}); name one as {path}#ID", ids())),
@@ -152,7 +154,9 @@ fn only_specular(terms: &[Term]) -> Result<TorranceSparrow, miette::Report> {
     match (specular.next(), specular.next()) {
         (Some(one), None) => Ok(one),
         (None, _) => Err(miette!("--factors: the model has no torrance-sparrow term, so there is no D, G or F")),
-        (Some(_), Some(_)) => Err(miette!("--factors: the model has several torrance-sparrow terms; give one of them alone")),
+        (Some(_), Some(_)) => {
+            Err(miette!("--factors: the model has several torrance-sparrow terms; give one of them alone"))
+        }
     }
 }
 

@@ -139,8 +139,9 @@ struct SeparabilityResult {
 
 pub(crate) fn run(arguments: &Arguments) -> CommandResult {
     if let (Some(output), true) = (&arguments.output, arguments.files.len() > 1) {
-        std::fs::create_dir_all(output)
-            .map_err(|error| miette!("{}: cannot be made: {error}; with several FILEs -o is a folder", output.display()))?;
+        std::fs::create_dir_all(output).map_err(|error| {
+            miette!("{}: cannot be made: {error}; with several FILEs -o is a folder", output.display())
+        })?;
     }
     let progress = progress::bar(arguments.files.len() as u64, "fitting");
     let results: Vec<Result<FittedModel, miette::Report>> = arguments
@@ -186,7 +187,8 @@ fn fit_file(arguments: &Arguments, file: &Path) -> Result<FittedModel, miette::R
         denominator: arguments.denominator,
         reduction: arguments.reduce,
         assume_reference: arguments.reference,
-        data_digest: container::measurement_digest(measurement),
+        data_digest: container::measurement_digest(measurement)
+            .map_err(|error| miette!("{}: {error}", file.display()))?,
     };
     let start = Instant::now();
     let model = fit_measurement(&document, measurement, &options)
@@ -228,7 +230,11 @@ fn choose<'a>(document: &'a Document, asked: Option<&str>, file: &Path) -> Resul
     match (factors.as_slice(), samples.as_slice()) {
         ([one], _) | ([], [one]) => Ok(one),
         ([], []) => Err(miette!("{}: no measurement of a sample; the file holds: {}", file.display(), ids())),
-        _ => Err(miette!("{}: several measurements can be fitted ({}); name one with --measurement", file.display(), ids())),
+        _ => Err(miette!(
+            "{}: several measurements can be fitted ({}); name one with --measurement",
+            file.display(),
+            ids()
+        )),
     }
 }
 
@@ -309,7 +315,10 @@ fn fitted_model(file: &Path, model: &Model, seconds: f64) -> FittedModel {
 
 /// The result for people: one line per parameter, then what was found.
 fn text(model: &FittedModel) -> String {
-    let mut lines = vec![format!("{}: measurement `{}`, {}, reference {}", model.file, model.measurement, model.reduction, model.reference)];
+    let mut lines = vec![format!(
+        "{}: measurement `{}`, {}, reference {}",
+        model.file, model.measurement, model.reduction, model.reference
+    )];
     for term in &model.terms {
         for (name, parameter) in &term.parameters {
             lines.push(parameter_line(term.kind, name, parameter));

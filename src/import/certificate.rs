@@ -1,0 +1,116 @@
+//! The certified factor of the white reference: one number, or a two-column file.
+
+use std::path::Path;
+
+use super::error::{ImportError, fault, quoted};
+use super::number::value;
+use super::plan::Plan;
+use super::receipt::Notes;
+use super::record::Record;
+use super::source::Source;
+use super::{Options, columns};
+use crate::dataset::{Id, Measurement, Place, WhiteReference};
+
+/// The reference with its factor on the emission axis.
+#[derive(Debug)]
+pub(super) struct Certificate {
+    /// The white reference of the document.
+    pub(super) reference: WhiteReference,
+    /// None, one number, or one per emission wavelength.
+    pub(super) factor: Vec<f64>,
+}
+
+impl Certificate {
+    /// The factor at an emission index; 1 where there is no certificate.
+    pub(super) fn at(&self, column: usize) -> f64 {
+        self.factor.get(column).or(self.factor.last()).copied().unwrap_or(1.0)
+    }
+}
+
+/// Reads the certificate that the settings state.
+///
+/// # Errors
+/// [`ImportError`] where the text is neither a positive number nor a readable file, or the file's range is too short.
+pub(super) fn read(plan: &Plan, sample: &Measurement, notes: &mut Notes) -> Result<Certificate, ImportError> {
+    let settings = &plan.settings;
+    let mut reference = WhiteReference {
+        id: Id::from_title("white-reference"),
+        title: None,
+        certificate: settings.certificate.clone(),
+        certified_nm: Vec::new(),
+        certified_factor: Vec::new(),
+        certified_relative_uncertainty: settings.certified_relative_uncertainty,
+    };
+    let Some(text) = &settings.certified_factor else {
+        let text = "no certified factor is stated: the factor is relative to the real white reference as if it were \
+                    the perfect diffuser";
+        notes.assume(plan.place.clone(), text);
+        notes.unfilled("white_references/white-reference/certified_factor");
+        return Ok(Certificate { reference, factor: Vec::new() });
+    };
+    if settings.certified_relative_uncertainty.is_none() {
+        notes.unfilled("white_references/white-reference/certified_relative_uncertainty");
+    }
+    if let Some(number) = value(text) {
+        if number <= 0.0 {
+            return Err(refused(&plan.place, text));
+        }
+        reference.certified_factor = vec![number];
+        return Ok(Certificate { reference, factor: vec![number] });
+    }
+    let record = read_file(plan, text, notes)?;
+    let axis = sample.emission.wavelengths().unwrap_or(&[]);
+    let factor = axis.iter().map(|nm| interpolate(&record, *nm)).collect::<Option<Vec<f64>>>().ok_or_else(|| {
+        ImportError::Contradiction(fault(
+            Place::file(text.as_str()),
+            "a certificate that does not cover the emission axis",
+            format!("wavelengths from {:?} to {:?} nm", axis.first(), axis.last()),
+            "state a certificate over the whole range",
+        ))
+    })?;
+    if record.nm != axis {
+        let text = "the certified factor is interpolated linearly onto the emission axis";
+        notes.assume(record.place(), text);
+    }
+    reference.certified_nm = record.nm;
+    reference.certified_factor = record.values;
+    Ok(Certificate { reference, factor })
+}
+
+fn refused(place: &Place, text: &str) -> ImportError {
+    ImportError::Call(fault(
+        place.clone(),
+        format!("{} as the certified factor", quoted(text)),
+        "a number greater than zero, or the name of a file of two columns (nm, factor)",
+        "correct it",
+    ))
+}
+
+/// A file's name is relative to the manifest, or to where the command runs.
+fn read_file(plan: &Plan, name: &str, notes: &mut Notes) -> Result<Record, ImportError> {
+    let beside = plan.place.file.as_deref().map(Path::new).and_then(Path::parent).map(|folder| folder.join(name));
+    let path = beside.filter(|path| path.is_file()).unwrap_or_else(|| Path::new(name).to_path_buf());
+    if !path.is_file() {
+        return Err(refused(&plan.place, name));
+    }
+    let source = Source::read(&path, name)?;
+    let options = Options { allow_partial_grid: true, ..Options::default() };
+    let record = columns::parse(&source, &options)?.records.into_iter().next();
+    let record = record.filter(|record| record.values.iter().all(|value| *value > 0.0));
+    let mut input = source.input.clone();
+    input.dialect = "certificate, columns".to_owned();
+    input.records = 1;
+    notes.input(input);
+    record.ok_or_else(|| refused(&plan.place, name))
+}
+
+fn interpolate(record: &Record, nm: f64) -> Option<f64> {
+    let above = record.nm.partition_point(|known| *known < nm);
+    let (upper_nm, upper) = (*record.nm.get(above)?, *record.values.get(above)?);
+    if upper_nm == nm {
+        return Some(upper);
+    }
+    let below = above.checked_sub(1)?;
+    let (lower_nm, lower) = (record.nm[below], record.values[below]);
+    Some(lower + (upper - lower) * (nm - lower_nm) / (upper_nm - lower_nm))
+}

@@ -1,0 +1,204 @@
+//! Other people's formats, one file each: texts of the PR-650, PR-655 and PR-670, SpectraWin exports, texts of columns,
+//! the table CSV, and scans described by a manifest, a name pattern or a scan order. Every import writes a receipt:
+//! what was read, what was assumed, what could not be filled, what is worth a look.
+//!
+//! *May use:* `dataset`, `quantity`. Not `container`: an import makes a document, and who asked for it writes it.
+//!
+//! *Invariant:* nothing is assumed in silence, nothing is dropped in silence, and no value is changed. What the
+//! instrument refused is a row of missing values with the reason; what the source does not say is `unstated`; what can
+//! be read in two ways is an error that says which option decides.
+//!
+//! Whatever bytes come in, a parser ends in time and memory proportional to them (files are limited to
+//! [`MAX_FILE_BYTES`]) and answers with a document or an error with its place.
+//!
+//! ```no_run
+//! use bbrf::import::{Options, import};
+//!
+//! let document = import(&["scan/manifest.csv".into()], &Options::default())?;
+//! for notice in &document.provenance.receipts[0].notices {
+//!     println!("{}: {}", notice.place, notice.text);
+//! }
+//! # Ok::<(), bbrf::import::ImportError>(())
+//! ```
+
+mod angles;
+mod certificate;
+mod columns;
+mod dialect;
+mod error;
+mod factor;
+mod floor;
+mod gather;
+mod geometry_csv;
+mod keys;
+mod manifest;
+mod manifest_toml;
+mod mean;
+mod noise;
+mod number;
+mod particulars;
+mod parts;
+mod pattern;
+mod plan;
+mod pr650;
+mod quality;
+mod receipt;
+mod record;
+mod reference;
+mod rows;
+mod scan;
+mod scan_order;
+mod source;
+mod spectra;
+mod spectrawin;
+pub mod table_csv;
+mod text;
+mod times;
+
+use std::path::{Path, PathBuf};
+
+pub use angles::Angles;
+pub use dialect::Dialect;
+pub use error::{Fault, ImportError};
+pub use geometry_csv::{GeometryRow, read_geometries};
+pub use keys::{KEYS, Settings};
+pub use source::MAX_FILE_BYTES;
+
+use crate::dataset::{Document, Place, Role};
+use crate::quantity::{Geometry, named};
+use error::fault;
+use receipt::Notes;
+use source::Source;
+
+named! {
+    /// A format that is read.
+    Format, "format" {
+        /// Raw texts of the PR-650 (D5), PR-655 and PR-670 (M5).
+        Pr650 = "pr650",
+        /// SpectraWin exports, full or spectral-only.
+        SpectraWin = "spectrawin",
+        /// Texts of columns.
+        Columns = "columns",
+        /// Table CSV.
+        TableCsv = "table",
+        /// Scan manifest in CSV.
+        Manifest = "manifest",
+        /// Scan manifest in TOML.
+        ManifestToml = "manifest-toml",
+    }
+}
+
+impl Format {
+    /// True for files that hold spectra and nothing about a scan.
+    fn is_spectra(self) -> bool {
+        matches!(self, Self::Pr650 | Self::SpectraWin | Self::Columns)
+    }
+}
+
+/// How to import. The default decides by content and states nothing.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Options {
+    /// Force a format instead of finding it by content.
+    pub format: Option<Format>,
+    /// Force the dialect of texts of columns.
+    pub dialect: Option<Dialect>,
+    /// What the caller states; it goes before what a table or manifest states.
+    pub settings: Settings,
+    /// The role of spectra without a manifest.
+    pub role: Option<Role>,
+    /// Their geometry.
+    pub geometry: Option<Geometry>,
+    /// File names that say the geometry, as `ti{theta_i}_tv{theta_v}.txt`.
+    pub pattern: Option<String>,
+    /// The order of a scan, as `theta_i=-80:80:10; theta_v=-80:80:10; skip=retro`.
+    pub scan_order: Option<String>,
+    /// Files or wildcards of the white reference.
+    pub white: Vec<String>,
+    /// Files or wildcards of dark signals.
+    pub dark: Vec<String>,
+    /// Files or wildcards of the light source.
+    pub lamp: Vec<String>,
+    /// The sample's records are repeats of one look.
+    pub repeats: bool,
+    /// Take records that the instrument calls uncalibrated.
+    pub allow_uncalibrated: bool,
+    /// Take texts of columns that cover a part of the PR-650's grid.
+    pub allow_partial_grid: bool,
+}
+
+/// Reads the inputs and makes one document of them, with one receipt.
+///
+/// The inputs are one manifest, one table, or any number of files of spectra (and folders of them, with a pattern or a
+/// scan order).
+///
+/// # Errors
+/// [`ImportError`] with file and line or byte, what was found, what was expected and what to do.
+pub fn import(inputs: &[PathBuf], options: &Options) -> Result<Document, ImportError> {
+    let mut notes = Notes::default();
+    let mut document = match inputs {
+        [] => {
+            return Err(ImportError::Call(fault(Place::file("the call"), "no input", "at least one file", "name it")));
+        }
+        [one] if !one.is_dir() => import_one(one, options, &mut notes)?,
+        several => {
+            refuse_descriptions(several, options)?;
+            scan::assemble(gather::plan(several, options, &mut notes)?, options, &mut notes)?
+        }
+    };
+    document.provenance.receipts.push(notes.finish());
+    document.check()?;
+    Ok(document)
+}
+
+fn import_one(path: &Path, options: &Options, notes: &mut Notes) -> Result<Document, ImportError> {
+    let source = Source::read(path, &path.display().to_string())?;
+    match options.format.unwrap_or_else(|| spectra::sniff(&source)) {
+        Format::TableCsv => table_csv::document(&source, options, notes),
+        Format::Manifest | Format::ManifestToml => {
+            refuse_file_options(options)?;
+            scan::assemble(manifest::plan(&source, path, options, notes)?, options, notes)
+        }
+        _ => scan::assemble(gather::plan(&[path.to_path_buf()], options, notes)?, options, notes),
+    }
+}
+
+/// A manifest says which files have which role: naming some in the call as well would be two truths.
+fn refuse_file_options(options: &Options) -> Result<(), ImportError> {
+    let given = [
+        ("--pattern", options.pattern.is_some()),
+        ("--scan-order", options.scan_order.is_some()),
+        ("--white", !options.white.is_empty()),
+        ("--dark", !options.dark.is_empty()),
+        ("--lamp", !options.lamp.is_empty()),
+        ("--role", options.role.is_some()),
+        ("--geometry", options.geometry.is_some()),
+        ("--repeats", options.repeats),
+    ];
+    let Some((option, _)) = given.into_iter().find(|(_, given)| *given) else { return Ok(()) };
+    Err(ImportError::Call(fault(
+        Place::file("the call"),
+        format!("{option} with a manifest"),
+        "roles and geometries in one place",
+        "say it in the manifest",
+    )))
+}
+
+/// A manifest or a table is an import of its own.
+fn refuse_descriptions(inputs: &[PathBuf], options: &Options) -> Result<(), ImportError> {
+    if options.format.is_some_and(Format::is_spectra) {
+        return Ok(());
+    }
+    for path in inputs.iter().filter(|path| path.is_file()) {
+        let source = Source::read(path, &path.display().to_string())?;
+        let format = options.format.unwrap_or_else(|| spectra::sniff(&source));
+        if !format.is_spectra() {
+            return Err(ImportError::Call(fault(
+                source.at_line(1),
+                format!("a {format} beside other inputs"),
+                "one manifest, one table, or files of spectra",
+                "import it on its own",
+            )));
+        }
+    }
+    Ok(())
+}

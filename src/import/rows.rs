@@ -1,0 +1,210 @@
+//! A table of named columns under `# key: value` lines: what manifests and table CSV have in common.
+
+use super::angles::Written;
+use super::error::{ImportError, fault, quoted};
+use super::keys::{Settings, key_line};
+use super::number::value;
+use super::source::Source;
+use crate::dataset::Place;
+
+/// The rows of a table, by the names of its columns.
+#[derive(Debug)]
+pub(crate) struct Rows {
+    file: String,
+    columns: Vec<String>,
+    rows: Vec<(u64, Vec<String>)>,
+}
+
+/// One row.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Row<'a> {
+    table: &'a Rows,
+    /// The line it stands in.
+    pub(crate) line: u64,
+    fields: &'a [String],
+}
+
+/// Column names of other programs and their names here.
+const ALIASES: &[(&str, &str)] = &[
+    ("lambda_i_nm", "excitation_nm"),
+    ("theta_i", "theta_i_deg"),
+    ("theta_v", "theta_v_deg"),
+    ("phi_i", "phi_i_deg"),
+    ("phi_v", "phi_v_deg"),
+];
+
+/// The header line of a table: the first line that is neither blank nor a comment.
+pub(crate) fn header_line(source: &Source) -> Option<(u64, &str)> {
+    source.text.lines().find(|line| !line.text.trim_start().starts_with('#')).map(|line| (line.number, line.text))
+}
+
+impl Rows {
+    /// Reads the keys into `settings` and the rows of a CSV text. `known` are the columns that it may have.
+    ///
+    /// # Errors
+    /// [`ImportError`] with the line for unknown keys and columns, doubled columns, and rows of another length.
+    pub(crate) fn from_csv(source: &Source, settings: &mut Settings, known: &[&str]) -> Result<Self, ImportError> {
+        for line in source.text.lines().take_while(|line| line.text.trim_start().starts_with('#')) {
+            match key_line(line.text) {
+                Some((key, text)) => settings.take(key, text, source.at_line(line.number))?,
+                None => {
+                    return Err(ImportError::Call(fault(
+                        source.at_line(line.number),
+                        format!("the comment {}", quoted(line.text.trim())),
+                        "`# key: value`",
+                        "say it as `# title: ...`, or take the line out: nothing is passed over",
+                    )));
+                }
+            }
+        }
+        let Some((first, _)) = header_line(source) else {
+            return Err(ImportError::Malformed(fault(
+                source.at_line(1),
+                "no line of column names",
+                format!("a header with columns of: {}", known.join(", ")),
+                "add the header",
+            )));
+        };
+        let mut reader = csv::ReaderBuilder::new()
+            .has_headers(false)
+            .flexible(true)
+            .trim(csv::Trim::All)
+            .comment(Some(b'#'))
+            .from_reader(source.text.rest_from(first).as_bytes());
+        let mut rows = Vec::new();
+        let mut record = csv::StringRecord::new();
+        loop {
+            match reader.read_record(&mut record) {
+                Ok(false) => break,
+                Ok(true) => {
+                    let line = first - 1 + record.position().map_or(1, csv::Position::line);
+                    rows.push((line, record.iter().map(str::to_owned).collect::<Vec<_>>()));
+                }
+                Err(error) => {
+                    let line = error.position().map_or(first, |position| first - 1 + position.line());
+                    return Err(malformed(source.at_line(line), error.to_string(), "a row of the table"));
+                }
+            }
+        }
+        let (line, header) = rows.remove(0);
+        let table = Self::new(source, line, header, rows, known)?;
+        table.check_lengths()?;
+        Ok(table)
+    }
+
+    /// A table from column names and rows.
+    pub(crate) fn new(
+        source: &Source,
+        header_line: u64,
+        header: Vec<String>,
+        rows: Vec<(u64, Vec<String>)>,
+        known: &[&str],
+    ) -> Result<Self, ImportError> {
+        let canonical = |name: &String| {
+            let name = name.trim().to_ascii_lowercase();
+            ALIASES.iter().find(|(alias, _)| *alias == name).map_or(name, |(_, canonical)| (*canonical).to_owned())
+        };
+        let columns: Vec<String> = header.iter().map(canonical).collect();
+        for (index, column) in columns.iter().enumerate() {
+            let unknown = !known.contains(&column.as_str());
+            if unknown || columns[..index].contains(column) {
+                let what = if unknown { "unknown" } else { "doubled" };
+                return Err(ImportError::Call(fault(
+                    source.at_line(header_line),
+                    format!("the {what} column {}", quoted(column)),
+                    format!("columns of: {}", known.join(", ")),
+                    "rename the column or take it out: nothing is passed over",
+                )));
+            }
+        }
+        let rows: Vec<_> =
+            rows.into_iter().filter(|(_, fields)| fields.iter().any(|field| !field.is_empty())).collect();
+        if rows.is_empty() {
+            return Err(malformed(source.at_line(header_line), "no rows", "at least one row under the header"));
+        }
+        Ok(Self { file: source.name.clone(), columns, rows })
+    }
+
+    fn check_lengths(&self) -> Result<(), ImportError> {
+        let wrong = self.rows.iter().find(|(_, fields)| fields.len() != self.columns.len());
+        wrong.map_or(Ok(()), |(line, fields)| {
+            let expected = format!("{}, one per column of the header", self.columns.len());
+            Err(malformed(Place::file(self.file.as_str()).at_line(*line), format!("{} fields", fields.len()), expected))
+        })
+    }
+
+    /// The rows.
+    pub(crate) fn iter(&self) -> impl Iterator<Item = Row<'_>> {
+        self.rows.iter().map(|(line, fields)| Row { table: self, line: *line, fields })
+    }
+
+    /// Number of rows.
+    pub(crate) fn len(&self) -> usize {
+        self.rows.len()
+    }
+
+    /// True where the table has the column.
+    pub(crate) fn has(&self, column: &str) -> bool {
+        self.columns.iter().any(|name| name == column)
+    }
+}
+
+impl<'a> Row<'a> {
+    /// Where the row stands.
+    pub(crate) fn place(&self) -> Place {
+        Place::file(self.table.file.as_str()).at_line(self.line)
+    }
+
+    /// The text of a column; `None` where the table has no such column or the field is empty.
+    pub(crate) fn text(&self, column: &str) -> Option<&'a str> {
+        let index = self.table.columns.iter().position(|name| name == column)?;
+        self.fields.get(index).map(String::as_str).filter(|text| !text.is_empty())
+    }
+
+    /// The number in a column.
+    pub(crate) fn number(&self, column: &str) -> Result<Option<f64>, ImportError> {
+        let Some(text) = self.text(column) else { return Ok(None) };
+        value(text).map(Some).ok_or_else(|| self.bad(column, text, "a finite number with a decimal point"))
+    }
+
+    /// The number in a column, which must be greater than zero.
+    pub(crate) fn positive(&self, column: &str) -> Result<Option<f64>, ImportError> {
+        match self.number(column)? {
+            Some(number) if number <= 0.0 => Err(self.bad(column, &number.to_string(), "a number greater than zero")),
+            other => Ok(other),
+        }
+    }
+
+    /// The whole number in a column.
+    pub(crate) fn whole(&self, column: &str) -> Result<Option<u32>, ImportError> {
+        let Some(text) = self.text(column) else { return Ok(None) };
+        text.parse().map(Some).map_err(|_| self.bad(column, text, "a whole number"))
+    }
+
+    /// The angles of the row; `None` where all fields are empty.
+    pub(crate) fn angles(&self) -> Result<Option<Written>, ImportError> {
+        let names = if self.table.has("phi_i_deg") || self.table.has("phi_v_deg") {
+            &["theta_i_deg", "phi_i_deg", "theta_v_deg", "phi_v_deg"][..]
+        } else {
+            &["theta_i_deg", "theta_v_deg"][..]
+        };
+        let numbers: Vec<Option<f64>> = names.iter().map(|name| self.number(name)).collect::<Result<_, _>>()?;
+        match numbers.as_slice() {
+            [Some(theta_i), Some(theta_v)] => Ok(Some(Written::Signed(*theta_i, *theta_v))),
+            [Some(theta_i), Some(phi_i), Some(theta_v), Some(phi_v)] => {
+                Ok(Some(Written::Full([*theta_i, *phi_i, *theta_v, *phi_v])))
+            }
+            numbers if numbers.iter().all(Option::is_none) => Ok(None),
+            _ => Err(self.bad("angles", "a part of them", &format!("all of {} or none", names.join(", ")))),
+        }
+    }
+
+    /// The error for a field that cannot be read.
+    pub(crate) fn bad(&self, column: &str, found: &str, expected: &str) -> ImportError {
+        malformed(self.place(), format!("{} in the column `{column}`", quoted(found)), expected)
+    }
+}
+
+fn malformed(place: Place, found: impl Into<String>, expected: impl Into<String>) -> ImportError {
+    ImportError::Malformed(fault(place, found, expected, "correct the line"))
+}
