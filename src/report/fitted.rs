@@ -6,7 +6,7 @@ use super::curve::{CurveText, Points, line_in_band};
 use super::frame::with_unit;
 use super::html::number;
 use super::separability::{mean_over_incidence, mean_over_viewing};
-use super::{Figure, ReportError, angle_map, histogram, interpolated_map, residual_map};
+use super::{Figure, ReportError, angle_map, histogram, interpolated_map, residual_map, surface};
 use crate::dataset::{Document, FittedParameter, FittedTerm, Measurement, Model};
 use crate::quantity::EmissionAxis;
 
@@ -38,6 +38,7 @@ pub fn fitted_figures(document: &Document, model: &Model, points: &AnglePoints) 
     match AngleMap::from_points(points, &points.measured, &quantity, &model.unit) {
         Ok(map) => {
             drawn.take(angle_map(&map, &format!("{subject}: measured")));
+            drawn.take(surface(&map, &format!("{subject}: measured, gaps interpolated")));
             drawn.take(interpolated_map(&map, &format!("{subject}: measured, gaps interpolated")));
         }
         Err(error) => drawn.not_drawn.push(error.in_full()),

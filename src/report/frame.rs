@@ -106,7 +106,7 @@ fn degree_ticks(scale: &Scale) -> Option<Vec<super::scale::Tick>> {
 }
 
 /// Title and subtitle from the top of the sheet, each on at most two lines.
-fn draw_titles(canvas: &mut Canvas, width: f64, labels: &Labels<'_>) {
+pub(super) fn draw_titles(canvas: &mut Canvas, width: f64, labels: &Labels<'_>) {
     let (titles, subtitles) = labels.lines(width);
     let mut y = 10.0;
     for line in titles {

@@ -22,6 +22,7 @@ mod scale;
 mod separability;
 mod spectrum;
 mod spline;
+mod surface;
 
 pub use angle_map::AngleMap;
 pub use angle_points::AnglePoints;
@@ -33,3 +34,4 @@ pub use histogram::histogram;
 pub use map::{angle_map, interpolated_map, residual_map};
 pub use page::{Pictures, page};
 pub use spectrum::measurement_figures;
+pub use surface::surface;

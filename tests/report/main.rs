@@ -7,7 +7,7 @@ mod scan;
 use bbrf::quantity::{Geometry, SignHabit};
 use bbrf::report::{
     AngleMap, AnglePoints, CurveText, Drawn, Figure, Pictures, Points, ReportError, angle_map, dots_and_curve,
-    fitted_figures, histogram, interpolated_map, line_in_band, measurement_figures, page, residual_map,
+    fitted_figures, histogram, interpolated_map, line_in_band, measurement_figures, page, residual_map, surface,
 };
 use ndarray::Array2;
 
@@ -63,6 +63,14 @@ fn what_is_interpolated_is_marked_and_its_corners_stay_empty() {
 }
 
 #[test]
+fn a_surface_is_pale_where_it_leans_on_what_was_not_measured() {
+    let svg = surface(&map(), "Sheet").unwrap().to_svg();
+    // 16 x 16 facets; those at the two corners of the retro diagonal have an open end.
+    assert_eq!(svg.matches("<path ").count(), 254);
+    assert!(svg.contains("leans on interpolated points") && svg.contains("never fitted"));
+}
+
+#[test]
 fn a_missing_cell_is_told_apart_from_the_retro_gap() {
     let mut map = map();
     map.values[(3, 4)] = f64::NAN;
@@ -78,6 +86,7 @@ fn figures_name_quantities_units_and_sample() {
     let drawn = fitted_figures(&document, &document.models[0], &scan::points());
     let all = [
         "sheet-fit-map",
+        "sheet-fit-surface",
         "sheet-fit-map-interpolated",
         "sheet-fit-mean-over-viewing",
         "sheet-fit-mean-over-incidence",
@@ -88,8 +97,8 @@ fn figures_name_quantities_units_and_sample() {
     let svg: Vec<String> = drawn.figures.iter().map(Figure::to_svg).collect();
     assert!(svg.iter().all(|svg| svg.contains("Fluorescence sheet, yellow (simulated)") && svg.contains("viewBox")));
     assert!(svg[0].contains("radiance factor, 500–620 nm (unit 1)"));
-    assert!(svg[2].contains("incidence angle θᵢ (degrees, signed)") && svg[2].contains("fitted cosine"));
-    assert!(svg[4].contains("(measured − predicted) / standard uncertainty"));
+    assert!(svg[3].contains("incidence angle θᵢ (degrees, signed)") && svg[3].contains("fitted cosine"));
+    assert!(svg[5].contains("(measured − predicted) / standard uncertainty"));
     assert!(drawn.figures.iter().all(|figure| !figure.caption().is_empty()));
 }
 
@@ -126,7 +135,7 @@ fn a_document_is_drawn_from_its_own_numbers() {
     let points = AnglePoints::of(&document, &document.models[0]).unwrap();
     assert_eq!((points.geometry.len(), points.measured.len(), points.predicted.len()), (272, 272, 272));
     let pictures = Pictures::of(&document);
-    assert_eq!(pictures.figures().count(), 7);
+    assert_eq!(pictures.figures().count(), 8);
     let mut broken = document.clone();
     broken.models[0].measurement = scan::id("nowhere");
     let pictures = Pictures::of(&broken);
@@ -143,7 +152,7 @@ fn the_page_is_whole_and_nothing_in_it_is_markup_of_the_file() {
     for text in ["1.01511", "0.00041", "0.50 %", "correlated (-0.98)", "quality code 18", "Simulated, not measured"] {
         assert!(html.contains(text), "{text}");
     }
-    assert_eq!(html.matches("<svg ").count(), 7);
+    assert_eq!(html.matches("<svg ").count(), 8);
     assert!(!html.contains("<script") && !html.contains("href="), "self-contained");
 }
 
@@ -198,7 +207,7 @@ fn one_point_makes_a_picture() {
         };
         let document = scan::document();
         let drawn = fitted_figures(&document, &document.models[0], &points);
-        assert_eq!(drawn.figures.len(), 6, "{:?}", drawn.not_drawn);
+        assert_eq!(drawn.figures.len(), 7, "{:?}", drawn.not_drawn);
         for figure in &drawn.figures {
             figure.to_png().unwrap();
         }
