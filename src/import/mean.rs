@@ -12,6 +12,8 @@ use crate::quantity::{Flag, Flags};
 
 /// Degrees of freedom from which a pooled standard deviation is good to 16 %.
 const ENOUGH: f64 = 20.0;
+/// A handful of repeats tells a scale error to 30 % only; the noise model's counts as this many degrees of freedom.
+const MODEL_FREEDOM: f64 = 10.0;
 
 /// How much repeats spread.
 #[derive(Debug, Clone, PartialEq)]
@@ -39,7 +41,11 @@ impl Spread {
             .zip(&pool.freedom)
             .map(|(sum, freedom)| if *freedom >= ENOUGH && *sum > 0.0 { sum / freedom } else { overall })
             .collect();
-        let scale = (pool.scale_freedom >= 3).then(|| (pool.scale_sum / pool.scale_freedom as f64).sqrt());
+        let prior = if modelled { MODEL_FREEDOM } else { 0.0 };
+        let scale = (pool.scale_freedom > 0 && prior + pool.scale_freedom as f64 >= 3.0).then(|| {
+            let sum = prior * RECORD_SCALE * RECORD_SCALE + pool.scale_sum;
+            (sum / (prior + pool.scale_freedom as f64)).sqrt()
+        });
         Self { excess, scale, freedom: pool.scale_freedom, modelled }
     }
 
@@ -66,8 +72,8 @@ impl Spread {
             );
         }
         let scale = self.scale.map_or_else(
-            || format!("{RECORD_SCALE} (too few repeats to tell)"),
-            |scale| format!("{scale:.2e} (from the repeats)"),
+            || format!("{RECORD_SCALE} (the noise model's)"),
+            |scale| format!("{scale:.2e} (repeats, with the noise model's {RECORD_SCALE} as ten degrees of freedom)"),
         );
         format!(
             "repeats are averaged; their spread ({} degrees of freedom) is pooled in units of the noise model, apart \
