@@ -1,5 +1,6 @@
 //! What is written is read back to the bit, and the same document gives the same bytes.
 #![cfg(feature = "write")]
+#![allow(clippy::unwrap_used, reason = "a test")]
 
 mod documents;
 
