@@ -46,7 +46,6 @@ fn head(measurement: &Measurement, target: &mut impl Write) -> std::io::Result<(
         key("title", title)?;
     }
     key("quantity", quantity.kind.name())?;
-    key("units", quantity.kind.unit())?;
     key("part", quantity.part.name())?;
     key("normalised-at", quantity.normalised_at.name())?;
     key("basis", quantity.basis.name())?;
