@@ -8,16 +8,20 @@
 //! - [`dataset`]: the document that labs exchange.
 //! - [`container`]: that document as an HDF5 file, read back to the bit.
 //! - [`import`]: other people's formats, each with its receipt of assumptions.
+//! - [`export`]: the document in other people's formats.
+//! - [`validate`]: rules with stable ids, and what they find.
 //! - [`fit`]: least squares over the terms, without a starting point.
 //! - [`report`]: figures and the HTML page.
 
 pub mod container;
 pub mod dataset;
+pub mod export;
 pub mod fit;
 pub mod import;
 pub mod quantity;
 pub mod report;
 pub mod terms;
+pub mod validate;
 
 #[cfg(feature = "write")]
 pub mod cli;

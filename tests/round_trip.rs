@@ -1,5 +1,6 @@
 //! What is written is read back to the bit, and the same document gives the same bytes.
 #![cfg(feature = "write")]
+#![allow(clippy::unwrap_used, reason = "a test")]
 
 mod documents;
 
@@ -83,4 +84,20 @@ fn what_would_read_back_as_something_else_is_refused() {
     let mut document = small();
     document.samples.clear();
     assert!(document_bytes(&document).unwrap_err().to_string().contains("not in the document"));
+}
+
+/// Prints what a scan of the usual size takes; `cargo test --release --test round_trip usual -- --nocapture`.
+#[test]
+fn a_scan_of_the_usual_size_is_small() {
+    let mut document = small();
+    let geometries: Vec<Geometry> =
+        (0..272).map(|row| Geometry::from_degrees(f64::from(row) / 4.0, 180.0, 45.0, 0.0).unwrap()).collect();
+    document.measurements.push(measurement("usual", &geometries, 101));
+    let start = std::time::Instant::now();
+    let (bytes, _) = document_bytes(&document).unwrap();
+    let written = start.elapsed();
+    read_bytes(&bytes, &Limits::default()).unwrap();
+    println!("272 x 101: {} bytes, written in {written:?}, read in {:?}", bytes.len(), start.elapsed() - written);
+    // Values, uncertainties and flags take 494 kB before compression.
+    assert!(bytes.len() < 494_000, "{} bytes", bytes.len());
 }

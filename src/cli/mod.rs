@@ -23,10 +23,22 @@ struct Arguments {
 
 #[derive(Debug, Subcommand)]
 enum Command {
-    Import(command::import::Arguments),
+    Import(Box<command::import::Arguments>),
     Fit(command::fit::Arguments),
     Eval(command::eval::Arguments),
     Report(command::report::Arguments),
+    Info(command::info::Arguments),
+    Validate(command::validate::Arguments),
+    Export(command::export::Arguments),
+    Rules(command::rules::Arguments),
+    Explain(command::rules::ExplainArguments),
+    Schema(command::schema::Arguments),
+}
+
+/// Every JSON Schema by name: the document, and what each `--json` prints.
+#[must_use]
+pub fn schemas() -> Vec<(&'static str, schemars::Schema)> {
+    command::schema::all()
 }
 
 /// Runs the command with the arguments of the process.
@@ -37,5 +49,11 @@ pub fn run() -> ExitCode {
         Command::Fit(arguments) => command::fit::run(&arguments),
         Command::Eval(arguments) => command::eval::run(&arguments),
         Command::Report(arguments) => command::report::run(&arguments),
+        Command::Info(arguments) => command::info::run(&arguments),
+        Command::Validate(arguments) => command::validate::run(&arguments),
+        Command::Export(arguments) => command::export::run(&arguments),
+        Command::Rules(arguments) => command::rules::run(&arguments),
+        Command::Explain(arguments) => command::rules::explain(&arguments),
+        Command::Schema(arguments) => command::schema::run(&arguments),
     })
 }

@@ -108,6 +108,7 @@ fn hexadecimal(bytes: &[u8]) -> String {
 }
 
 /// Puts the digests into a tree: `sha256` on every object, `digest` on the root.
+#[cfg(feature = "write")]
 pub(super) fn sign(root: &mut Group) -> Digest {
     let digest = of_tree(root);
     sign_below(root);
@@ -115,6 +116,7 @@ pub(super) fn sign(root: &mut Group) -> Digest {
     digest
 }
 
+#[cfg(feature = "write")]
 fn sign_below(group: &mut Group) {
     let own = of_object(Object::Group(group));
     group.attributes.insert(name::SHA256.to_owned(), Array::text(own));

@@ -10,6 +10,13 @@ pub const MINOR: u64 = 0;
 /// Value of the root attribute `Conventions`.
 pub const CONVENTIONS: &str = "CF-1.11 BBRF-1.0";
 
+/// The version that a file states, as major and minor; `None` where the text has another form.
+#[must_use]
+pub fn parse_version(text: &str) -> Option<(u64, u64)> {
+    let (major, minor) = text.split_once('.')?;
+    Some((major.parse().ok()?, minor.parse().ok()?))
+}
+
 /// Names of groups, datasets and attributes.
 #[allow(missing_docs)]
 pub mod name {

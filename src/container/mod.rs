@@ -26,7 +26,7 @@ mod write;
 pub use digest::{Digest, digest, measurement_digest};
 pub use error::{EncodeError, ReadError, WriteError};
 pub use limits::Limits;
-pub use open::{Opened, open_verified, read_bytes, read_file, read_tree};
+pub use open::{Inspection, Mismatch, Opened, inspect, open_verified, read_bytes, read_file};
 
 #[cfg(feature = "write")]
 pub use save::{document_bytes, tree_bytes, write_file};

@@ -44,20 +44,71 @@ pub fn read_file(path: &Path) -> Result<Opened, ReadError> {
 /// # Errors
 /// As [`read_file`].
 pub fn read_bytes(bytes: &[u8], limits: &Limits) -> Result<Opened, ReadError> {
-    let tree = from_bytes(bytes, limits)?;
-    let document = decode(&tree)?;
+    let Inspection { document, stored_digest, computed_digest, unknown, mismatches, .. } = inspect(bytes, limits)?;
+    let document = document?;
     document.check().map_err(|source| ReadError::Document { place: Box::default(), source })?;
-    let canonical =
-        encode(&document).map_err(|error| ReadError::unexpected("/", error.to_string(), "a storable document"))?;
-    let computed_digest = of_tree(&canonical);
+    let computed_digest =
+        computed_digest.ok_or_else(|| ReadError::unexpected("/", "a text with U+0000", "a storable document"))?;
+    let mismatched = mismatches.iter().map(Mismatch::to_string).collect();
+    Ok(Opened { document, stored_digest, computed_digest, unknown, mismatched })
+}
+
+/// A file looked at without asking that it is right.
+#[derive(Debug)]
+pub struct Inspection {
+    /// Everything in it.
+    pub tree: Group,
+    /// The document, or why there is none; its parts are not checked against each other.
+    pub document: Result<Document, ReadError>,
+    /// The digest that the file states.
+    pub stored_digest: Option<String>,
+    /// The digest of the document, where there is one.
+    pub computed_digest: Option<Digest>,
+    /// Content that the standard does not know.
+    pub unknown: Vec<String>,
+    /// What differs from how the document would be written.
+    pub mismatches: Vec<Mismatch>,
+}
+
+/// Looks at the bytes of a file, however broken the document in them.
+///
+/// # Errors
+/// [`ReadError`] when the bytes are no HDF5, damaged, or beyond the limits.
+pub fn inspect(bytes: &[u8], limits: &Limits) -> Result<Inspection, ReadError> {
+    let tree = from_bytes(bytes, limits)?;
+    let document = decode(&tree);
     let stored_digest = stored_text(&tree.attributes, name::DIGEST);
-    Ok(Opened {
-        mismatched: mismatched(&tree, &canonical, &computed_digest, stored_digest.as_deref()),
-        unknown: unknown(&tree),
-        document,
-        stored_digest,
-        computed_digest,
-    })
+    let canonical = document.as_ref().ok().and_then(|document| encode(document).ok());
+    let computed_digest = canonical.as_ref().map(of_tree);
+    let mismatches = match (&canonical, &computed_digest) {
+        (Some(canonical), Some(digest)) => mismatches(&tree, canonical, digest, stored_digest.as_deref()),
+        _ => Vec::new(),
+    };
+    Ok(Inspection { unknown: unknown(&tree), tree, document, stored_digest, computed_digest, mismatches })
+}
+
+/// Something in a file that is not as its document would be written.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Mismatch {
+    /// An object that is not there.
+    Absent(String),
+    /// An object without its digest, or a document without one.
+    Unsigned(String),
+    /// An object, or a document, whose content does not have the stored digest.
+    Digest(String),
+    /// An attribute that is not what the standard gives it.
+    Attribute(String),
+}
+
+impl std::fmt::Display for Mismatch {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Absent(path) => write!(f, "{path}: missing"),
+            Self::Unsigned(path) => write!(f, "{path}: missing digest"),
+            Self::Digest(path) => write!(f, "{path}: the content does not have its stored digest"),
+            Self::Attribute(path) => write!(f, "{path}: not what the standard gives it"),
+        }
+    }
 }
 
 /// Reads a file whose content has the digests stored with it.
@@ -73,33 +124,23 @@ pub fn open_verified(path: &Path) -> Result<Document, ReadError> {
     Err(ReadError::Damaged { place, mismatched: opened.mismatched })
 }
 
-/// The raw tree of a file, for rules that look at what cannot be decoded.
-///
-/// # Errors
-/// [`ReadError`] when the bytes are no HDF5, damaged, or beyond the limits.
-pub fn read_tree(bytes: &[u8], limits: &Limits) -> Result<Group, ReadError> {
-    from_bytes(bytes, limits)
-}
-
 fn stored_text(attributes: &Attributes, name: &str) -> Option<String> {
     attributes.get(name).and_then(Array::as_text).map(str::to_owned)
 }
 
 /// Everything that is not as it was written: digests that disagree, and content that differs from what the decoded
 /// document would be written as.
-fn mismatched(tree: &Group, canonical: &Group, computed: &Digest, stored: Option<&str>) -> Vec<String> {
+fn mismatches(tree: &Group, canonical: &Group, computed: &Digest, stored: Option<&str>) -> Vec<Mismatch> {
     let digests: BTreeMap<String, String> = of_objects(canonical).into_iter().collect();
     let mut found = objects(tree);
     let mut wrong = Vec::new();
     canonical.visit("", &mut |path, expected| match found.remove(path) {
-        None => wrong.push(format!("{path}: missing")),
+        None => wrong.push(Mismatch::Absent(path.to_owned())),
         Some(object) => compare(path, object, expected, &digests, &mut wrong),
     });
     match stored {
-        None => wrong.push(format!("/@{}: missing", name::DIGEST)),
-        Some(stored) if stored != computed.as_str() => {
-            wrong.push(format!("/@{}: stored {stored}, the content has {computed}", name::DIGEST));
-        }
+        None => wrong.push(Mismatch::Unsigned(format!("/@{}", name::DIGEST))),
+        Some(stored) if stored != computed.as_str() => wrong.push(Mismatch::Digest(format!("/@{}", name::DIGEST))),
         Some(_) => {}
     }
     wrong
@@ -118,19 +159,19 @@ fn compare(
     object: Object<'_>,
     expected: Object<'_>,
     digests: &BTreeMap<String, String>,
-    wrong: &mut Vec<String>,
+    wrong: &mut Vec<Mismatch>,
 ) {
     match stored_text(object.attributes(), name::SHA256) {
-        None => wrong.push(format!("{path}@{}: missing", name::SHA256)),
+        None => wrong.push(Mismatch::Unsigned(path.to_owned())),
         Some(stored) if digests.get(path) != Some(&stored) => {
-            wrong.push(format!("{path}: the content does not have its stored digest"));
+            wrong.push(Mismatch::Digest(path.to_owned()));
         }
         Some(_) => {}
     }
     for (name, expected) in expected.attributes() {
         let same = object.attributes().get(name).is_some_and(|found| found.same_values(expected));
         if !same && !is_empty_text(object.attributes().get(name), expected) {
-            wrong.push(format!("{path}@{name}: not what the standard gives it"));
+            wrong.push(Mismatch::Attribute(format!("{path}@{name}")));
         }
     }
 }

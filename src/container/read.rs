@@ -16,7 +16,7 @@ use crate::dataset::Place;
 ///
 /// # Errors
 /// [`ReadError`] when the bytes are no HDF5, damaged, or beyond the limits.
-pub fn from_bytes(bytes: &[u8], limits: &Limits) -> Result<Group, ReadError> {
+pub(super) fn from_bytes(bytes: &[u8], limits: &Limits) -> Result<Group, ReadError> {
     let size = bytes.len() as u64;
     within("bytes", size, limits.file_bytes, "/")?;
     let decoded = limits.decoded_bytes(size);

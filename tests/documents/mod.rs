@@ -1,5 +1,5 @@
 //! Documents for tests: a small one with every kind of part, and arbitrary ones.
-#![allow(dead_code, reason = "each test uses some of it")]
+#![allow(dead_code, unused_imports, unreachable_pub, clippy::unwrap_used, reason = "each test uses some of it")]
 
 mod arbitrary;
 

@@ -1,6 +1,11 @@
 //! One file per command. Each has `Arguments` and `run(&Arguments) -> CommandResult`.
 
 pub(crate) mod eval;
+pub(crate) mod export;
 pub(crate) mod fit;
 pub(crate) mod import;
+pub(crate) mod info;
 pub(crate) mod report;
+pub(crate) mod rules;
+pub(crate) mod schema;
+pub(crate) mod validate;

@@ -34,18 +34,12 @@ pub(super) fn decode(root: &Group) -> Result<Document, ReadError> {
     })
 }
 
-/// The version that a file states, as major and minor.
-pub(super) fn parse_version(text: &str) -> Option<(u64, u64)> {
-    let (major, minor) = text.split_once('.')?;
-    Some((major.parse().ok()?, minor.parse().ok()?))
-}
-
 fn version(root: &At<'_>) -> Result<(), ReadError> {
     let place = root.attribute_path(name::BBRF_VERSION);
     let stated = root
         .optional_text(name::BBRF_VERSION)?
         .ok_or_else(|| ReadError::missing(&place, "the version of the standard; this is HDF5, but no bbrf file"))?;
-    match parse_version(&stated) {
+    match layout::parse_version(&stated) {
         Some((layout::MAJOR, _)) => Ok(()),
         Some(_) => Err(ReadError::Version { place: Box::new(crate::dataset::Place::path(place)), found: stated }),
         None => Err(ReadError::unexpected(&place, stated, "a version such as 1.0")),

@@ -19,7 +19,7 @@ const CHUNK_BYTES: usize = 1 << 20;
 ///
 /// # Errors
 /// [`WriteError::Library`] when libhdf5 refuses something.
-pub fn to_bytes(root: &Group) -> Result<Vec<u8>, WriteError> {
+pub(super) fn to_bytes(root: &Group) -> Result<Vec<u8>, WriteError> {
     exclusively(|| {
         let file = memory_file()?;
         write_group(&file, root)?;

@@ -1,0 +1,75 @@
+//! `bbrf export`: a file in another format.
+
+use std::io::Write;
+use std::path::PathBuf;
+
+use miette::{IntoDiagnostic, WrapErr, miette};
+
+use crate::cli::exit::{CommandResult, Outcome};
+use crate::container;
+use crate::dataset::{Document, Measurement};
+use crate::export::{json, table_csv};
+use crate::quantity::QuantityKind;
+
+/// Write a file in another format.
+#[derive(Debug, clap::Args)]
+pub(crate) struct Arguments {
+    /// The .bbrf file
+    file: PathBuf,
+    /// The format
+    #[arg(long, value_enum)]
+    to: Format,
+    /// The measurement, by id [default: the only one, or the only one that is a factor]
+    #[arg(long, value_name = "ID")]
+    measurement: Option<String>,
+    /// Write here instead of to stdout
+    #[arg(short, long)]
+    output: Option<PathBuf>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+enum Format {
+    /// One measurement as a table
+    Csv,
+    /// The whole document
+    Json,
+}
+
+pub(crate) fn run(arguments: &Arguments) -> CommandResult {
+    let document = container::open_verified(&arguments.file).map_err(|error| miette!("{error}"))?;
+    let mut bytes = Vec::new();
+    match arguments.to {
+        Format::Csv => table_csv::write(chosen(&document, arguments.measurement.as_deref())?, &mut bytes),
+        Format::Json => {
+            let digest = container::digest(&document).map_err(|error| miette!("{error}"))?;
+            json::write(&document, digest.as_str(), &mut bytes)
+        }
+    }
+    .into_diagnostic()?;
+    match &arguments.output {
+        Some(path) => container::replace::write_whole(path, |file| file.write_all(&bytes))
+            .into_diagnostic()
+            .wrap_err_with(|| format!("{} cannot be written", path.display()))?,
+        // A closed pipe is the reader's decision.
+        None => drop(std::io::stdout().lock().write_all(&bytes)),
+    }
+    Ok(Outcome::Done)
+}
+
+fn chosen<'a>(document: &'a Document, id: Option<&str>) -> Result<&'a Measurement, miette::Report> {
+    let ids: Vec<&str> = document.measurements.iter().map(|measurement| measurement.id.as_str()).collect();
+    let listed = ids.join(", ");
+    if let Some(id) = id {
+        return document
+            .measurement(id)
+            .ok_or_else(|| miette!("there is no measurement `{id}`; expected one of: {listed}"));
+    }
+    let is_factor = |kind: QuantityKind| kind.is_factor();
+    let factors: Vec<&Measurement> = document.measurements.iter().filter(|m| is_factor(m.quantity.kind)).collect();
+    match (document.measurements.as_slice(), factors.as_slice()) {
+        ([only], _) => Ok(only),
+        (_, [only]) => Ok(only),
+        ([], _) => Err(miette!("the file holds no measurement")),
+        _ => Err(miette!(help = "name one with --measurement", "the file holds several measurements: {listed}")),
+    }
+}

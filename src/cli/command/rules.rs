@@ -1,0 +1,81 @@
+//! `bbrf rules` and `bbrf explain`: what is checked, and why.
+
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::validate::unknown_rule;
+use crate::cli::exit::{CommandResult, Outcome};
+use crate::cli::output::{print_json, print_text};
+use crate::validate::{RULES, Rule, Severity, rule};
+
+/// List the rules.
+#[derive(Debug, clap::Args)]
+pub(crate) struct Arguments {
+    /// Print JSON
+    #[arg(long)]
+    json: bool,
+}
+
+/// Say what a rule checks and why.
+#[derive(Debug, clap::Args)]
+pub(crate) struct ExplainArguments {
+    /// Id or alias of the rule, as in geometry.polar-range or BB0401
+    rule: String,
+    /// Print JSON
+    #[arg(long)]
+    json: bool,
+}
+
+/// What `--json` prints.
+#[derive(Debug, Serialize, JsonSchema)]
+pub(crate) struct RulesResult {
+    rules: Vec<RuleText>,
+}
+
+/// One rule.
+#[derive(Debug, Serialize, JsonSchema)]
+struct RuleText {
+    id: &'static str,
+    alias: &'static str,
+    severity: Severity,
+    rationale: &'static str,
+    /// An example of a violation.
+    example: &'static str,
+    /// What to do about it.
+    repair: &'static str,
+}
+
+impl From<&Rule> for RuleText {
+    fn from(rule: &Rule) -> Self {
+        let Rule { id, alias, severity, rationale, example, repair, .. } = rule;
+        Self { id, alias, severity: *severity, rationale, example, repair }
+    }
+}
+
+pub(crate) fn run(arguments: &Arguments) -> CommandResult {
+    if arguments.json {
+        print_json("bbrf:rules:1", &RulesResult { rules: RULES.iter().map(RuleText::from).collect() })?;
+    } else {
+        let line = |rule: &Rule| format!("{}  {:7}  {}", rule.alias, rule.severity.name(), rule.id);
+        print_text(&RULES.iter().map(line).collect::<Vec<_>>().join("\n"));
+    }
+    Ok(Outcome::Done)
+}
+
+pub(crate) fn explain(arguments: &ExplainArguments) -> CommandResult {
+    let rule = rule(&arguments.rule).ok_or_else(|| unknown_rule(&arguments.rule))?;
+    if arguments.json {
+        print_json("bbrf:rules:1", &RulesResult { rules: vec![rule.into()] })?;
+    } else {
+        print_text(&format!(
+            "{} ({}), {}\n\n{}\n\nFor example: {}.\nRepair: {}",
+            rule.id,
+            rule.alias,
+            rule.severity.name(),
+            rule.rationale,
+            rule.example,
+            rule.repair
+        ));
+    }
+    Ok(Outcome::Done)
+}

@@ -1,0 +1,46 @@
+//! `bbrf schema`: the JSON Schemas of the document and of every result.
+
+use miette::miette;
+use schemars::{Schema, schema_for};
+
+use super::{info, rules, validate};
+use crate::cli::exit::{CommandResult, Outcome};
+use crate::cli::output::print_text;
+use crate::dataset::Document;
+
+/// Print a JSON Schema, or the names of all.
+#[derive(Debug, clap::Args)]
+pub(crate) struct Arguments {
+    /// Name of the schema
+    name: Option<String>,
+}
+
+/// Every schema by name; the files in `schema/` are these.
+#[must_use]
+pub(crate) fn all() -> Vec<(&'static str, Schema)> {
+    vec![
+        ("document", schema_for!(Document)),
+        ("eval", schema_for!(super::eval::EvalResult)),
+        ("fit", schema_for!(super::fit::FitResult)),
+        ("info", schema_for!(info::InfoResult)),
+        ("report", schema_for!(super::report::ReportResult)),
+        ("rules", schema_for!(rules::RulesResult)),
+        ("validate", schema_for!(validate::ValidateResult)),
+    ]
+}
+
+pub(crate) fn run(arguments: &Arguments) -> CommandResult {
+    let schemas = all();
+    let names = || schemas.iter().map(|(name, _)| *name).collect::<Vec<_>>();
+    let Some(wanted) = &arguments.name else {
+        print_text(&names().join("\n"));
+        return Ok(Outcome::Done);
+    };
+    let (_, schema) = schemas
+        .iter()
+        .find(|(name, _)| name == wanted)
+        .ok_or_else(|| miette!("there is no schema `{wanted}`; expected one of: {}", names().join(", ")))?;
+    let text = serde_json::to_string_pretty(schema).map_err(|error| miette!("{error}"))?;
+    print_text(&text);
+    Ok(Outcome::Done)
+}

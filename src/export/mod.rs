@@ -1,0 +1,8 @@
+//! Documents in other people's formats, one file each.
+//!
+//! *May use:* `dataset`, `quantity`. Writers take `impl Write`; whoever calls creates the file.
+//!
+//! *Invariant:* numbers are written so that reading gives the same bits.
+
+pub mod json;
+pub mod table_csv;

@@ -1,0 +1,34 @@
+//! Rules, one function each with a stable id, and what they find.
+//!
+//! *May use:* `container`, `dataset`, `terms`, `quantity`.
+//!
+//! *Invariant:* whatever the bytes, validation ends in a report; a file that cannot be read in full is never valid.
+
+mod context;
+mod finding;
+mod registry;
+mod rules;
+
+use crate::container::{Limits, inspect};
+
+pub use context::Context;
+pub use finding::{Finding, Report, Severity, Status};
+pub use registry::{RULES, Rule, rule};
+
+/// Validates the bytes of a file.
+#[must_use]
+pub fn validate_bytes(bytes: &[u8]) -> Report {
+    let inspection = match inspect(bytes, &Limits::default()) {
+        Ok(inspection) => inspection,
+        Err(error) => return rules::structure::unreadable(&error),
+    };
+    let context = Context::new(&inspection);
+    let mut findings = Vec::new();
+    for rule in RULES {
+        let mut found = rule.finder();
+        (rule.check)(&context, &mut found);
+        findings.append(&mut found.findings);
+    }
+    let readable = context.is_this_standard();
+    Report { digest: inspection.computed_digest.map(|digest| digest.to_string()), readable, findings }
+}

@@ -1,0 +1,60 @@
+//! Does every missing value say why, and every flag mean something?
+
+use super::super::Context;
+use super::super::finding::Finder;
+use crate::container::layout::name;
+use crate::dataset::{Measurement, Place};
+use crate::quantity::{Flag, Flags};
+
+/// Reports the first value of each measurement that the rule objects to, with how many there are.
+fn each(
+    context: &Context<'_>,
+    found: &mut Finder,
+    dataset: &str,
+    expected: &str,
+    objects: impl Fn(f64, Flags) -> Option<String>,
+) {
+    for (path, measurement) in context.measurements() {
+        let objections = all(measurement, &objects);
+        if let Some(((row, column), what)) = objections.first() {
+            let more = match objections.len() {
+                1 => String::new(),
+                count => format!(" (and {} more)", count - 1),
+            };
+            let place = Place::path(format!("{path}/{dataset}")).at_index([*row, *column]);
+            found.add(place, format!("{what}{more}"), expected);
+        }
+    }
+}
+
+type Objection = ((usize, usize), String);
+
+fn all(measurement: &Measurement, objects: &impl Fn(f64, Flags) -> Option<String>) -> Vec<Objection> {
+    let values = measurement.values.indexed_iter();
+    values.filter_map(|(at, value)| objects(*value, measurement.flags_at(at.0, at.1)).map(|what| (at, what))).collect()
+}
+
+pub(in super::super) fn unknown_bits(context: &Context<'_>, found: &mut Finder) {
+    each(context, found, name::VALUE_FLAG, "the bits in `flag_masks`", |_, flags| {
+        (flags.unknown_bits() != 0).then(|| format!("bits {:#06x}", flags.unknown_bits()))
+    });
+}
+
+pub(in super::super) fn nan_without_reason(context: &Context<'_>, found: &mut Finder) {
+    each(context, found, name::VALUE, "a flag that says why there is no value", |value, flags| {
+        (value.is_nan() && !flags.explains_absence()).then(|| "NaN without a reason".to_owned())
+    });
+}
+
+pub(in super::super) fn infinite(context: &Context<'_>, found: &mut Finder) {
+    each(context, found, name::VALUE, "a finite number, or NaN with a reason", |value, _| {
+        value.is_infinite().then(|| value.to_string())
+    });
+}
+
+pub(in super::super) fn value_not_measured(context: &Context<'_>, found: &mut Finder) {
+    each(context, found, name::VALUE, "NaN", |value, flags| {
+        let absent = [Flag::NotMeasured, Flag::NotMeasuredByDesign].into_iter().find(|flag| flags.contains(*flag));
+        absent.filter(|_| !value.is_nan()).map(|flag| format!("{value} although `{}`", flag.name()))
+    });
+}

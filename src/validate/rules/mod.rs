@@ -1,0 +1,11 @@
+//! The checks, by group.
+
+pub(super) mod digest;
+pub(super) mod flags;
+pub(super) mod geometry;
+pub(super) mod model;
+pub(super) mod quantity;
+pub(super) mod reference;
+pub(super) mod structure;
+pub(super) mod uncertainty;
+pub(super) mod wavelength;
