@@ -6,11 +6,17 @@
 //! - [`quantity`]: what a number means: directions, wavelengths, typed quantities, uncertainty, flags.
 //! - [`terms`]: one physical term each: value and exact derivatives, stable everywhere.
 //! - [`dataset`]: the document that labs exchange.
+//! - [`container`]: that document as an HDF5 file, read back to the bit.
 //! - [`import`]: other people's formats, each with its receipt of assumptions.
+//! - [`fit`]: least squares over the terms, without a starting point.
+//! - [`report`]: figures and the HTML page.
 
+pub mod container;
 pub mod dataset;
+pub mod fit;
 pub mod import;
 pub mod quantity;
+pub mod report;
 pub mod terms;
 
 #[cfg(feature = "write")]

@@ -2,6 +2,8 @@
 
 use std::process::ExitCode;
 
+use super::output::report_error;
+
 /// How a command ended when nothing stood in its way.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Outcome {
@@ -14,19 +16,13 @@ pub(crate) enum Outcome {
 /// What a command returns; an error is "could not be read, or the call is wrong", exit status 2.
 pub(crate) type CommandResult = Result<Outcome, miette::Report>;
 
-/// The exit status of a result; prints an error to stderr.
+/// The exit status of a result; an error goes to stderr.
 pub(crate) fn code(result: CommandResult) -> ExitCode {
     match result {
         Ok(Outcome::Done) => ExitCode::SUCCESS,
         Ok(Outcome::Failed) => ExitCode::from(1),
         Err(report) => {
-            eprintln!("bbrf: error: {report}");
-            for cause in report.chain().skip(1) {
-                eprintln!("  because: {cause}");
-            }
-            if let Some(help) = report.help() {
-                eprintln!("  help: {help}");
-            }
+            report_error(&report);
             ExitCode::from(2)
         }
     }

@@ -7,6 +7,7 @@
 mod command;
 mod exit;
 mod output;
+mod progress;
 
 use std::process::ExitCode;
 
@@ -23,14 +24,18 @@ struct Arguments {
 #[derive(Debug, Subcommand)]
 enum Command {
     Import(command::import::Arguments),
+    Fit(command::fit::Arguments),
+    Eval(command::eval::Arguments),
+    Report(command::report::Arguments),
 }
 
 /// Runs the command with the arguments of the process.
 #[must_use]
 pub fn run() -> ExitCode {
-    let arguments = Arguments::parse();
-    let outcome = match arguments.command {
+    exit::code(match Arguments::parse().command {
         Command::Import(arguments) => command::import::run(&arguments),
-    };
-    exit::code(outcome)
+        Command::Fit(arguments) => command::fit::run(&arguments),
+        Command::Eval(arguments) => command::eval::run(&arguments),
+        Command::Report(arguments) => command::report::run(&arguments),
+    })
 }

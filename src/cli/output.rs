@@ -24,3 +24,14 @@ pub(crate) fn print_json<T: Serialize>(schema: &str, result: &T) -> Result<(), m
 pub(crate) fn print_text(text: &str) {
     let _ = writeln!(std::io::stdout().lock(), "{text}");
 }
+
+/// Prints an error on stderr: what, why, and what to do.
+pub(crate) fn report_error(report: &miette::Report) {
+    eprintln!("bbrf: error: {report}");
+    for cause in report.chain().skip(1) {
+        eprintln!("  because: {cause}");
+    }
+    if let Some(help) = report.help() {
+        eprintln!("  help: {help}");
+    }
+}

@@ -29,6 +29,7 @@ mod error;
 mod factor;
 mod floor;
 mod gather;
+mod geometry_csv;
 mod keys;
 mod manifest;
 mod manifest_toml;
@@ -61,6 +62,7 @@ use std::path::{Path, PathBuf};
 pub use angles::Angles;
 pub use dialect::Dialect;
 pub use error::{Fault, ImportError};
+pub use geometry_csv::{GeometryRow, read_geometries};
 pub use keys::{KEYS, Settings};
 pub use source::MAX_FILE_BYTES;
 

@@ -51,7 +51,7 @@ use super::{Options, scan};
 use crate::dataset::{Acquisition, Document, Id, Measurement, Role};
 use crate::quantity::{EmissionAxis, Flag, Flags, Uncertainty, WavelengthAxis};
 
-const COLUMNS: &[&str] = &[
+pub(super) const COLUMNS: &[&str] = &[
     "theta_i_deg",
     "phi_i_deg",
     "theta_v_deg",

@@ -7,11 +7,21 @@
 
 mod denominator;
 mod distribution;
+mod fresnel;
+mod masking;
+mod parameter;
+mod term;
+mod torrance_sparrow;
 
 pub use denominator::Denominator;
 pub use distribution::{Distribution, DistributionValue};
+pub use fresnel::{FresnelValue, fresnel};
+pub use masking::{masking, masking_over};
+pub use parameter::{ALBEDO, INTENSITY, LUMINESCENT_FACTOR, Parameter, REFRACTIVE_INDEX, ROUGHNESS};
+pub use term::{Evaluation, InvalidParameter, Term, diffuse_factor, specular_factor};
+pub use torrance_sparrow::{Factors, TorranceSparrow};
 
-use crate::quantity::named;
+use crate::quantity::{ConversionRefused, named};
 
 named! {
     /// Which physical term.
@@ -23,4 +33,22 @@ named! {
         /// c_s D G F / den: reflection at the interface.
         TorranceSparrow = "torrance-sparrow",
     }
+}
+
+/// Why a term has no value at a geometry.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum Undefined {
+    /// L = -V: source and detector face each other along the surface, and there is no half vector.
+    #[error("source and detector face each other along the surface (L = -V): there is no half vector")]
+    NoHalfVector,
+    /// Both directions graze: the limit depends on which does first.
+    #[error("incidence and viewing both at 90 degrees: the limit depends on the way to it")]
+    PathDependent,
+    /// The specular term over the light that the reference received at the same grazing incidence grows without bound.
+    #[error("incidence at 90 degrees: the specular term over cos(theta_i) grows without bound")]
+    Unbounded,
+    /// The reference convention does not say what to divide by.
+    #[error(transparent)]
+    Reference(#[from] ConversionRefused),
 }

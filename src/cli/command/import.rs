@@ -8,6 +8,7 @@ use serde::Serialize;
 
 use super::super::exit::{CommandResult, Outcome};
 use super::super::output;
+use crate::container;
 use crate::dataset::{Document, Receipt, Role};
 use crate::import::{Angles, Dialect, Format, Options, Settings, import};
 use crate::quantity::{Geometry, Part, QuantityKind, Reference, ReferenceLight};
@@ -136,9 +137,8 @@ pub(crate) fn run(arguments: &Arguments) -> CommandResult {
 }
 
 fn save(document: &Document, path: &Path) -> Result<(), miette::Report> {
-    // TODO(container): crate::container::write_file(document, path).map_err(|error| miette!("{error}"))?;
-    let _ = (document, path);
-    Err(miette!("this build cannot write files yet"))
+    container::write_file(document, path).map_err(|error| miette!("{error}"))?;
+    Ok(())
 }
 
 fn options(arguments: &Arguments) -> Result<Options, miette::Report> {

@@ -1,0 +1,221 @@
+//! `bbrf eval`: forward values of a model over a list of geometries.
+
+use std::path::PathBuf;
+
+use miette::miette;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::cli::exit::{CommandResult, Outcome};
+use crate::cli::output::{print_json, print_text};
+use crate::container;
+use crate::dataset::predict;
+use crate::import::{GeometryRow, read_geometries};
+use crate::quantity::Reference;
+use crate::terms::{Factors, Term, TermKind, TorranceSparrow};
+
+/// Evaluate a model: Y/E of its elastic terms, one row per geometry.
+#[derive(Debug, clap::Args)]
+pub(crate) struct Arguments {
+    /// The model: FILE.bbrf#ID (FILE.bbrf where it holds one model), or a JSON file {"terms": [...]}
+    #[arg(long)]
+    model: String,
+    /// CSV with the columns theta_i_deg,phi_i_deg,theta_v_deg,phi_v_deg, or, under a line
+    /// `# angles: signed, mirror-at-equal`, theta_i_deg,theta_v_deg
+    #[arg(long)]
+    geometry: PathBuf,
+    /// Add phi_rad, D, G, F of the specular term
+    #[arg(long)]
+    factors: bool,
+    /// Print JSON instead of CSV
+    #[arg(long)]
+    json: bool,
+}
+
+/// A model as JSON.
+#[derive(Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct ModelJson {
+    /// The terms.
+    terms: Vec<Term>,
+}
+
+/// What `--json` prints.
+#[derive(Debug, Serialize, JsonSchema)]
+pub(crate) struct EvalResult {
+    rows: Vec<EvalRow>,
+}
+
+/// One geometry and emission value.
+#[derive(Debug, Serialize, JsonSchema)]
+struct EvalRow {
+    /// Incidence: angle from the normal, degrees.
+    theta_i_deg: f64,
+    phi_i_deg: f64,
+    theta_v_deg: f64,
+    phi_v_deg: f64,
+    /// Emission wavelength, where the model has several.
+    emission_nm: Option<f64>,
+    /// Y/E of the elastic terms; `null` where a term has no value.
+    value: Option<f64>,
+    /// Y/E of the luminescent terms, where the model has any.
+    luminescent: Option<f64>,
+    #[serde(rename = "phi_rad")]
+    phi: Option<f64>,
+    #[serde(rename = "D")]
+    d: Option<f64>,
+    #[serde(rename = "G")]
+    g: Option<f64>,
+    #[serde(rename = "F")]
+    f: Option<f64>,
+    #[serde(skip)]
+    signed: Option<(f64, f64)>,
+}
+
+/// Terms per emission value, with its wavelength where there are several.
+type Bands = Vec<(Option<f64>, Vec<Term>)>;
+
+pub(crate) fn run(arguments: &Arguments) -> CommandResult {
+    let bands = load(&arguments.model)?;
+    let specular = match (arguments.factors, bands.first()) {
+        (true, Some((_, terms))) => Some(only_specular(terms)?),
+        _ => None,
+    };
+    let geometries = read_geometries(&arguments.geometry).map_err(|error| miette!("{error}"))?;
+    let mut rows = Vec::with_capacity(geometries.len() * bands.len());
+    let mut undefined = 0_usize;
+    for geometry in &geometries {
+        for (emission_nm, terms) in &bands {
+            let row = evaluate(geometry, *emission_nm, terms, specular);
+            if let Err(problem) = &row.1 {
+                eprintln!("bbrf: {}, line {}: {problem}", arguments.geometry.display(), geometry.line);
+                undefined += 1;
+            }
+            rows.push(row.0);
+        }
+    }
+    if arguments.json {
+        print_json("bbrf:eval:1", &EvalResult { rows })?;
+    } else {
+        print_text(&csv(&rows, arguments.factors));
+    }
+    Ok(if undefined == 0 { Outcome::Done } else { Outcome::Failed })
+}
+
+fn load(model: &str) -> Result<Bands, miette::Report> {
+    let (path, id) = match model.rsplit_once('#') {
+        Some((path, id)) => (path, Some(id)),
+        None => (model, None),
+    };
+    let bytes = std::fs::read(path).map_err(|error| miette!("{path}: cannot be read: {error}"))?;
+    if bytes.first().is_some_and(|first| first.is_ascii_whitespace() || *first == b'{') {
+        return from_json(path, &bytes);
+    }
+    let document = container::open_verified(path.as_ref()).map_err(|error| miette!("{error}"))?;
+    let ids = || document.models.iter().map(|m| m.id.to_string()).collect::<Vec<_>>().join(", ");
+    let model = match (id, document.models.as_slice()) {
+        (Some(id), _) => {
+            document.model(id).ok_or_else(|| miette!("{path}: no model `{id}`; the file holds: {}", ids()))?
+        }
+        (None, [one]) => one,
+        (None, []) => return Err(miette!("{path}: holds no model; make one with `bbrf fit {path} -o OUT`")),
+        (None, _) => return Err(miette!("{path}: holds several models ({}); name one as {path}#ID", ids())),
+    };
+    let nm = model.emission.wavelengths();
+    (0..model.emission.len())
+        .map(|emission| {
+            let terms = model.terms_at(emission).map_err(|error| miette!("{path}, model `{}`: {error}", model.id))?;
+            Ok((nm.map(|nm| nm[emission]), terms))
+        })
+        .collect()
+}
+
+fn from_json(path: &str, bytes: &[u8]) -> Result<Bands, miette::Report> {
+    let model: ModelJson = serde_json::from_slice(bytes).map_err(|error| {
+        miette!(
+            "{path}: {error}; expected {{\"terms\": [{{\"kind\": \"lambertian\", \"albedo\": 0.8}}, ...]}} with the terms \
+             of `bbrf schema eval-model`"
+        )
+    })?;
+    for term in &model.terms {
+        term.check().map_err(|error| miette!("{path}: {error}"))?;
+    }
+    if model.terms.is_empty() {
+        return Err(miette!("{path}: `terms` is empty; a model needs at least one term"));
+    }
+    Ok(vec![(None, model.terms)])
+}
+
+fn only_specular(terms: &[Term]) -> Result<TorranceSparrow, miette::Report> {
+    let mut specular = terms.iter().filter_map(|term| match term {
+        Term::TorranceSparrow(term) => Some(*term),
+        _ => None,
+    });
+    match (specular.next(), specular.next()) {
+        (Some(one), None) => Ok(one),
+        (None, _) => Err(miette!("--factors: the model has no torrance-sparrow term, so there is no D, G or F")),
+        (Some(_), Some(_)) => {
+            Err(miette!("--factors: the model has several torrance-sparrow terms; give one of them alone"))
+        }
+    }
+}
+
+fn evaluate(
+    row: &GeometryRow,
+    emission_nm: Option<f64>,
+    terms: &[Term],
+    specular: Option<TorranceSparrow>,
+) -> (EvalRow, Result<(), String>) {
+    let geometry = &row.geometry;
+    let prediction = predict(terms, geometry, &Reference::None);
+    let factors: Option<Factors> = specular.and_then(|term| term.factors(geometry).ok());
+    let has_luminescent = terms.iter().any(|term| term.kind() == TermKind::Luminescent);
+    let value = prediction.as_ref().ok();
+    let result = EvalRow {
+        theta_i_deg: geometry.incidence.theta_deg(),
+        phi_i_deg: geometry.incidence.phi_deg(),
+        theta_v_deg: geometry.viewing.theta_deg(),
+        phi_v_deg: geometry.viewing.phi_deg(),
+        emission_nm,
+        value: value.map(|p| p.elastic),
+        luminescent: value.filter(|_| has_luminescent).map(|p| p.luminescent),
+        phi: factors.map(|f| f.phi_rad),
+        d: factors.map(|f| f.d),
+        g: factors.map(|f| f.g),
+        f: factors.map(|f| f.f),
+        signed: row.signed,
+    };
+    (result, prediction.map(|_| ()).map_err(|undefined| undefined.to_string()))
+}
+
+/// CSV: the angle columns as they came, then the values, numbers in their shortest form that reads back.
+fn csv(rows: &[EvalRow], factors: bool) -> String {
+    let signed = rows.first().is_some_and(|row| row.signed.is_some());
+    let spectral = rows.iter().any(|row| row.emission_nm.is_some());
+    let luminescent = rows.iter().any(|row| row.luminescent.is_some());
+    let mut header =
+        if signed { "theta_i_deg,theta_v_deg" } else { "theta_i_deg,phi_i_deg,theta_v_deg,phi_v_deg" }.to_owned();
+    header.push_str(if spectral { ",emission_nm" } else { "" });
+    header.push_str(",value");
+    header.push_str(if luminescent { ",luminescent" } else { "" });
+    header.push_str(if factors { ",phi_rad,D,G,F" } else { "" });
+    let mut lines = vec![header];
+    for row in rows {
+        let mut fields: Vec<String> = match row.signed {
+            Some((i, v)) => vec![i, v],
+            None => vec![row.theta_i_deg, row.phi_i_deg, row.theta_v_deg, row.phi_v_deg],
+        }
+        .into_iter()
+        .map(|angle| angle.to_string())
+        .collect();
+        let optional = |value: Option<f64>| value.map_or(String::new(), |value| format!("{value:?}"));
+        fields.extend(spectral.then(|| optional(row.emission_nm)));
+        fields.push(optional(row.value));
+        fields.extend(luminescent.then(|| optional(row.luminescent)));
+        if factors {
+            fields.extend([row.phi, row.d, row.g, row.f].map(optional));
+        }
+        lines.push(fields.join(","));
+    }
+    lines.join("\n")
+}

@@ -1,0 +1,372 @@
+//! `bbrf fit`: fits the terms to a measurement of each file.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use miette::miette;
+use rayon::prelude::*;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use crate::cli::exit::{CommandResult, Outcome};
+use crate::cli::output::{print_json, print_text, report_error};
+use crate::cli::progress;
+use crate::container;
+use crate::dataset::{Document, FittedParameter, Measurement, Model, Reduction, Role, Step};
+use crate::fit::{FitOptions, fit_measurement};
+use crate::quantity::Reference;
+use crate::terms::{Denominator, Distribution, TermKind};
+
+/// Fit Lambertian and Torrance-Sparrow terms, without a starting point.
+#[derive(Debug, clap::Args)]
+pub(crate) struct Arguments {
+    /// The .bbrf files
+    #[arg(required = true)]
+    files: Vec<PathBuf>,
+    /// Write the document with its model here: a file; with several FILEs a folder
+    #[arg(short, long)]
+    output: Option<PathBuf>,
+    /// The measurement to fit; needed where a file holds several that can be
+    #[arg(long)]
+    measurement: Option<String>,
+    /// Terms, separated by commas [default: luminescent for a luminescent factor, else lambertian,torrance-sparrow]
+    #[arg(long, value_delimiter = ',')]
+    terms: Vec<TermKind>,
+    /// Form of D: gaussian-half-height, gaussian, torrance-sparrow-1967, beckmann, trowbridge-reitz
+    #[arg(long, default_value = Distribution::GaussianHalfHeight.name())]
+    distribution: Distribution,
+    /// Denominator of the specular term: cos-theta-i, cos-theta-v, cos-i-cos-v
+    #[arg(long, default_value = Denominator::CosThetaI.name())]
+    denominator: Denominator,
+    /// How a spectrum becomes the fitted number: auto, band:FROM-TO (nm), luminance, none (every wavelength)
+    #[arg(long, default_value = "auto")]
+    reduce: Reduction,
+    /// Reference to assume where the file states none: same-geometry, fixed-geometry(THETA_I,THETA_V), none
+    #[arg(long)]
+    reference: Option<Reference>,
+    /// Print the result as JSON
+    #[arg(long)]
+    json: bool,
+}
+
+/// What `--json` prints.
+#[derive(Debug, Serialize, JsonSchema)]
+pub(crate) struct FitResult {
+    /// One per file.
+    models: Vec<FittedModel>,
+}
+
+/// One fitted model.
+#[derive(Debug, Serialize, JsonSchema)]
+struct FittedModel {
+    /// The file as given.
+    file: String,
+    /// The model's id.
+    id: String,
+    /// The measurement's id.
+    measurement: String,
+    /// True when the fit ended at a minimum inside its box.
+    converged: bool,
+    /// How a spectrum became the fitted number.
+    reduction: String,
+    /// Reference convention of the fitted numbers.
+    reference: String,
+    /// The terms.
+    terms: Vec<TermResult>,
+    /// Covariance of the parameters named.
+    covariance: CovarianceResult,
+    /// Residuals.
+    residual: ResidualResult,
+    /// What the data cannot tell, and other findings.
+    identifiability: Vec<String>,
+    /// The paper's separability check, for in-plane scans.
+    separability: Option<SeparabilityResult>,
+    /// How the fit was done and why it stopped.
+    method: String,
+    /// Time of the fit alone, seconds.
+    seconds: f64,
+}
+
+/// One term.
+#[derive(Debug, Serialize, JsonSchema)]
+struct TermResult {
+    kind: TermKind,
+    distribution: Option<Distribution>,
+    denominator: Option<Denominator>,
+    parameters: BTreeMap<String, ParameterResult>,
+}
+
+/// A parameter: numbers, or arrays where it has one value per wavelength; `null` where the data cannot tell.
+#[derive(Debug, Serialize, JsonSchema)]
+struct ParameterResult {
+    value: NumberOrList,
+    standard_uncertainty: NumberOrList,
+    shared_relative_uncertainty: Option<NumberOrList>,
+    unit: String,
+}
+
+/// One number or a list.
+#[derive(Debug, Serialize, JsonSchema)]
+#[serde(untagged)]
+enum NumberOrList {
+    Number(Option<f64>),
+    List(Vec<Option<f64>>),
+}
+
+#[derive(Debug, Serialize, JsonSchema)]
+struct CovarianceResult {
+    parameters: Vec<String>,
+    matrix: Vec<Vec<Option<f64>>>,
+}
+
+#[derive(Debug, Serialize, JsonSchema)]
+struct ResidualResult {
+    rms: Option<f64>,
+    reduced_chi_square: Option<f64>,
+    count: u64,
+    left_out: u64,
+}
+
+/// The numbers of the separability check without its curves.
+#[derive(Debug, Serialize, JsonSchema)]
+struct SeparabilityResult {
+    cosine_amplitude: f64,
+    cosine_relative_rms: f64,
+    constancy_relative_rms: f64,
+    rank_one_relative_rms: f64,
+}
+
+pub(crate) fn run(arguments: &Arguments) -> CommandResult {
+    if let (Some(output), true) = (&arguments.output, arguments.files.len() > 1) {
+        std::fs::create_dir_all(output).map_err(|error| {
+            miette!("{}: cannot be made: {error}; with several FILEs -o is a folder", output.display())
+        })?;
+    }
+    let progress = progress::bar(arguments.files.len() as u64, "fitting");
+    let results: Vec<Result<FittedModel, miette::Report>> = arguments
+        .files
+        .par_iter()
+        .map(|file| {
+            let result = fit_file(arguments, file);
+            progress.inc(1);
+            result
+        })
+        .collect();
+    progress.finish_and_clear();
+    let (mut models, mut errors) = (Vec::new(), Vec::new());
+    for result in results {
+        match result {
+            Ok(model) => models.push(model),
+            Err(error) => errors.push(error),
+        }
+    }
+    let converged = models.iter().all(|model| model.converged);
+    if let ([], Some(first)) = (models.as_slice(), (errors.len() == 1).then(|| errors.pop()).flatten()) {
+        return Err(first);
+    }
+    if arguments.json {
+        print_json("bbrf:fit:1", &FitResult { models })?;
+    } else {
+        models.iter().for_each(|model| print_text(&text(model)));
+    }
+    errors.iter().for_each(report_error);
+    match errors.len() {
+        0 if converged => Ok(Outcome::Done),
+        0 => Ok(Outcome::Failed),
+        count => Err(miette!("{count} of {} files could not be fitted", arguments.files.len())),
+    }
+}
+
+fn fit_file(arguments: &Arguments, file: &Path) -> Result<FittedModel, miette::Report> {
+    let mut document = container::open_verified(file).map_err(|error| miette!("{error}"))?;
+    let measurement = choose(&document, arguments.measurement.as_deref(), file)?;
+    let options = FitOptions {
+        terms: arguments.terms.clone(),
+        distribution: arguments.distribution,
+        denominator: arguments.denominator,
+        reduction: arguments.reduce,
+        assume_reference: arguments.reference,
+        data_digest: container::measurement_digest(measurement)
+            .map_err(|error| miette!("{}: {error}", file.display()))?,
+    };
+    let start = Instant::now();
+    let model = fit_measurement(&document, measurement, &options)
+        .map_err(|error| miette!("{}: {error}{}", file.display(), hint(&error)))?;
+    let seconds = start.elapsed().as_secs_f64();
+    let result = fitted_model(file, &model, seconds);
+    if let Some(output) = &arguments.output {
+        store(&mut document, model);
+        let path = match file.file_name() {
+            Some(name) if arguments.files.len() > 1 => output.join(name),
+            _ => output.clone(),
+        };
+        container::write_file(&document, &path).map_err(|error| miette!("{error}"))?;
+    }
+    Ok(result)
+}
+
+/// How the call can be mended where the error alone does not say.
+fn hint(error: &crate::fit::FitError) -> &'static str {
+    use crate::fit::{FitError, SetError};
+    match error {
+        FitError::Geometry { source: SetError::Reference(_), .. } => {
+            ", in the file, or pass it as --reference (it is recorded as an assumption)"
+        }
+        _ => "",
+    }
+}
+
+/// The measurement asked for, or the one that can be meant: a factor of a sample before a radiance.
+fn choose<'a>(document: &'a Document, asked: Option<&str>, file: &Path) -> Result<&'a Measurement, miette::Report> {
+    let ids = || document.measurements.iter().map(|m| m.id.to_string()).collect::<Vec<_>>().join(", ");
+    if let Some(id) = asked {
+        return document
+            .measurement(id)
+            .ok_or_else(|| miette!("{}: no measurement `{id}`; the file holds: {}", file.display(), ids()));
+    }
+    let samples: Vec<&Measurement> = document.measurements.iter().filter(|m| m.role == Role::Sample).collect();
+    let factors: Vec<&Measurement> = samples.iter().copied().filter(|m| m.quantity.kind.is_factor()).collect();
+    match (factors.as_slice(), samples.as_slice()) {
+        ([one], _) | ([], [one]) => Ok(one),
+        ([], []) => Err(miette!("{}: no measurement of a sample; the file holds: {}", file.display(), ids())),
+        _ => Err(miette!(
+            "{}: several measurements can be fitted ({}); name one with --measurement",
+            file.display(),
+            ids()
+        )),
+    }
+}
+
+/// Puts the model into the document, in place of an older one of the same id.
+fn store(document: &mut Document, model: Model) {
+    document.provenance.steps.push(Step {
+        tool: concat!("bbrf ", env!("CARGO_PKG_VERSION")).to_owned(),
+        action: format!("fitted model `{}` to measurement `{}`", model.id, model.measurement),
+        time: None,
+    });
+    match document.models.iter_mut().find(|old| old.id == model.id) {
+        Some(old) => *old = model,
+        None => document.models.push(model),
+    }
+}
+
+fn finite(value: f64) -> Option<f64> {
+    value.is_finite().then_some(value)
+}
+
+fn number_or_list(values: &[f64]) -> NumberOrList {
+    match values {
+        [one] => NumberOrList::Number(finite(*one)),
+        many => NumberOrList::List(many.iter().copied().map(finite).collect()),
+    }
+}
+
+fn parameter_result(parameter: &FittedParameter) -> ParameterResult {
+    let shared = &parameter.shared_relative_uncertainty;
+    ParameterResult {
+        value: number_or_list(&parameter.value),
+        standard_uncertainty: number_or_list(&parameter.standard_uncertainty),
+        shared_relative_uncertainty: (!shared.is_empty()).then(|| number_or_list(shared)),
+        unit: parameter.unit.clone(),
+    }
+}
+
+fn fitted_model(file: &Path, model: &Model, seconds: f64) -> FittedModel {
+    let terms = model
+        .terms
+        .iter()
+        .map(|term| TermResult {
+            kind: term.kind,
+            distribution: term.distribution,
+            denominator: term.denominator,
+            parameters: term.parameters.iter().map(|p| (p.name.clone(), parameter_result(p))).collect(),
+        })
+        .collect();
+    FittedModel {
+        file: file.display().to_string(),
+        id: model.id.to_string(),
+        measurement: model.measurement.to_string(),
+        converged: model.converged,
+        reduction: model.reduction.clone(),
+        reference: model.reference.to_string(),
+        terms,
+        covariance: CovarianceResult {
+            parameters: model.covariance_parameters.clone(),
+            matrix: model.covariance.rows().into_iter().map(|row| row.iter().copied().map(finite).collect()).collect(),
+        },
+        residual: ResidualResult {
+            rms: finite(model.residuals.rms),
+            reduced_chi_square: finite(model.residuals.reduced_chi_square),
+            count: model.residuals.count,
+            left_out: model.residuals.left_out,
+        },
+        identifiability: model.identifiability.clone(),
+        separability: model.separability.as_ref().map(|s| SeparabilityResult {
+            cosine_amplitude: s.cosine_amplitude,
+            cosine_relative_rms: s.cosine_relative_rms,
+            constancy_relative_rms: s.constancy_relative_rms,
+            rank_one_relative_rms: s.rank_one_relative_rms,
+        }),
+        method: model.method.clone(),
+        seconds,
+    }
+}
+
+/// The result for people: one line per parameter, then what was found.
+fn text(model: &FittedModel) -> String {
+    let mut lines = vec![format!(
+        "{}: measurement `{}`, {}, reference {}",
+        model.file, model.measurement, model.reduction, model.reference
+    )];
+    for term in &model.terms {
+        for (name, parameter) in &term.parameters {
+            lines.push(parameter_line(term.kind, name, parameter));
+        }
+        if let (Some(distribution), Some(denominator)) = (term.distribution, term.denominator) {
+            lines.push(format!("  {:<18}distribution {distribution}, denominator {denominator}", ""));
+        }
+    }
+    let residual = &model.residual;
+    lines.push(format!(
+        "  {} values fitted, {} left out; residual r.m.s. {:.3e}, reduced chi-square {}",
+        residual.count,
+        residual.left_out,
+        residual.rms.unwrap_or(f64::NAN),
+        residual.reduced_chi_square.map_or("not known (no uncertainties)".to_owned(), |value| format!("{value:.3}"))
+    ));
+    if let Some(s) = &model.separability {
+        lines.push(format!(
+            "  separable: average over viewing departs {:.1} % from a cosine, average over incidence {:.1} % from a \
+             constant, best product leaves {:.1} %",
+            100.0 * s.cosine_relative_rms,
+            100.0 * s.constancy_relative_rms,
+            100.0 * s.rank_one_relative_rms
+        ));
+    }
+    lines.extend(model.identifiability.iter().map(|finding| format!("  note: {finding}")));
+    if !model.converged {
+        lines.push(format!("  NOT CONVERGED: {}", model.method));
+    }
+    lines.join("\n")
+}
+
+fn parameter_line(term: TermKind, name: &str, parameter: &ParameterResult) -> String {
+    let unit = if parameter.unit == "1" { String::new() } else { format!(" {}", parameter.unit) };
+    let shared = match &parameter.shared_relative_uncertainty {
+        Some(NumberOrList::Number(Some(shared))) => format!(", and {:.2} % shared with all values", 100.0 * shared),
+        _ => String::new(),
+    };
+    match (&parameter.value, &parameter.standard_uncertainty) {
+        (NumberOrList::Number(value), NumberOrList::Number(sigma)) => {
+            let sigma = sigma.map_or("unknown".to_owned(), |sigma| format!("{sigma:.2e}"));
+            format!("  {term:<18}{name:<18}{:.6}{unit} ± {sigma}{shared}", value.unwrap_or(f64::NAN))
+        }
+        (NumberOrList::List(values), _) => {
+            let known = values.iter().flatten();
+            let (low, high) = known.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)));
+            format!("  {term:<18}{name:<18}{} values from {low:.4} to {high:.4}{unit} (all with --json)", values.len())
+        }
+        _ => format!("  {term:<18}{name:<18}"),
+    }
+}

@@ -1,0 +1,102 @@
+//! `bbrf report`: one HTML page about a file, and its figures as PNG and SVG.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use miette::miette;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use crate::cli::exit::{CommandResult, Outcome};
+use crate::cli::output::{print_json, print_text};
+use crate::container;
+use crate::report::{Figure, Pictures, page};
+
+/// Draw a file: one HTML page, and its figures as PNG and SVG.
+#[derive(Debug, clap::Args)]
+pub(crate) struct Arguments {
+    /// The .bbrf file
+    file: PathBuf,
+    /// Write the page here [default: the file's name with .html, unless --figures is given]
+    #[arg(short, long)]
+    output: Option<PathBuf>,
+    /// Write each figure into this folder, as PNG and as SVG with its font inside
+    #[arg(long, value_name = "DIR")]
+    figures: Option<PathBuf>,
+    /// Print what was written as JSON
+    #[arg(long)]
+    json: bool,
+}
+
+/// What `--json` prints.
+#[derive(Debug, Serialize, JsonSchema)]
+pub(crate) struct ReportResult {
+    /// The page, if one was written.
+    page: Option<String>,
+    /// Every figure file.
+    figures: Vec<String>,
+    /// What could not be drawn, one sentence each.
+    not_drawn: Vec<String>,
+}
+
+pub(crate) fn run(arguments: &Arguments) -> CommandResult {
+    let document = container::open_verified(&arguments.file).map_err(|error| miette!("{error}"))?;
+    let pictures = Pictures::of(&document);
+    let mut result = ReportResult { page: None, figures: Vec::new(), not_drawn: not_drawn(&pictures) };
+    if let Some(folder) = &arguments.figures {
+        result.figures = write_figures(folder, &pictures)?;
+    }
+    if let Some(path) = page_path(arguments) {
+        write_whole(&path, page(&document, &pictures).as_bytes())?;
+        result.page = Some(path.display().to_string());
+    }
+    print_result(arguments, &result)?;
+    Ok(Outcome::Done)
+}
+
+/// Where the page goes; nowhere where only figures are asked for.
+fn page_path(arguments: &Arguments) -> Option<PathBuf> {
+    let default = || arguments.figures.is_none().then(|| arguments.file.with_extension("html"));
+    arguments.output.clone().or_else(default)
+}
+
+fn not_drawn(pictures: &Pictures) -> Vec<String> {
+    pictures.models.iter().chain(&pictures.measurements).flat_map(|drawn| drawn.not_drawn.clone()).collect()
+}
+
+fn write_figures(folder: &Path, pictures: &Pictures) -> Result<Vec<String>, miette::Report> {
+    std::fs::create_dir_all(folder).map_err(|error| miette!("{}: cannot be made: {error}", folder.display()))?;
+    let mut written = Vec::new();
+    for figure in pictures.figures() {
+        for (extension, bytes) in forms(figure)? {
+            let path = folder.join(format!("{}.{extension}", figure.name()));
+            write_whole(&path, &bytes)?;
+            written.push(path.display().to_string());
+        }
+    }
+    Ok(written)
+}
+
+fn forms(figure: &Figure) -> Result<[(&'static str, Vec<u8>); 2], miette::Report> {
+    let png = figure.to_png().map_err(|error| miette!("{error}"))?;
+    Ok([("png", png), ("svg", figure.to_svg_with_font().into_bytes())])
+}
+
+/// Writes a file whole or not at all.
+fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), miette::Report> {
+    container::replace::write_whole(path, |file| file.write_all(bytes))
+        .map_err(|error| miette!("{}: cannot be written: {error}", path.display()))
+}
+
+fn print_result(arguments: &Arguments, result: &ReportResult) -> Result<(), miette::Report> {
+    if arguments.json {
+        return print_json("bbrf:report:1", result);
+    }
+    for path in result.page.iter().chain(&result.figures) {
+        print_text(path);
+    }
+    for reason in &result.not_drawn {
+        eprintln!("not drawn: {reason}");
+    }
+    Ok(())
+}

@@ -1,0 +1,126 @@
+//! SHA-256 of the logical content: values and the attributes that the standard lists, whatever their encoding in a file.
+//!
+//! The digest of an object is SHA-256 over its kind (`group` or `dataset`), for a dataset its array, and its attributes
+//! in the order of their names, each as name and array. A text is its length in bytes (64 bit, little-endian) and its
+//! UTF-8 bytes; an array is its element type as a text, the number of its axes and their lengths (64 bit), its values
+//! (little-endian; NaN with its bits). The digest of a document is SHA-256 over the lines `DIGEST PATH\n` of all its
+//! objects, ordered by path.
+//!
+//! It is taken of the tree that a document is written as, so a copy through another program has the same digest.
+
+use std::fmt;
+use std::fmt::Write as _;
+
+use sha2::{Digest as _, Sha256};
+
+use super::encode::{encode, encode_measurement};
+use super::error::EncodeError;
+use super::layout::{is_outside_digest, name};
+use super::tree::{Array, Group, Object};
+use crate::dataset::{Document, Measurement};
+
+/// The digest of a document or of one of its parts.
+#[derive(Debug, Clone, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct Digest(String);
+
+impl Digest {
+    /// The text form, `sha256:` and 64 hexadecimal digits.
+    #[must_use]
+    pub fn as_str(&self) -> &str {
+        &self.0
+    }
+}
+
+impl fmt::Display for Digest {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.0)
+    }
+}
+
+/// The digest of a document.
+///
+/// # Errors
+/// [`EncodeError`] where the document has no form in the standard.
+pub fn digest(document: &Document) -> Result<Digest, EncodeError> {
+    Ok(of_tree(&encode(document)?))
+}
+
+/// The digest of a measurement, whatever its id and its place in a document. A model keeps that of the data it was
+/// fitted to.
+///
+/// # Errors
+/// [`EncodeError`] where the measurement has no form in the standard.
+pub fn measurement_digest(measurement: &Measurement) -> Result<String, EncodeError> {
+    Ok(of_tree(&encode_measurement(measurement)?).0)
+}
+
+/// The digest of a tree.
+pub(super) fn of_tree(root: &Group) -> Digest {
+    let mut lines = of_objects(root);
+    lines.sort();
+    let mut hash = Sha256::new();
+    for (path, digest) in lines {
+        hash.update(format!("{digest} {path}\n"));
+    }
+    Digest(format!("sha256:{}", hexadecimal(&hash.finalize())))
+}
+
+/// Path and digest of every object.
+pub(super) fn of_objects(root: &Group) -> Vec<(String, String)> {
+    let mut digests = Vec::new();
+    root.visit("", &mut |path, object| digests.push((path.to_owned(), of_object(object))));
+    digests
+}
+
+fn of_object(object: Object<'_>) -> String {
+    let mut hash = Sha256::new();
+    match object {
+        Object::Group(_) => text(&mut hash, "group"),
+        Object::Dataset(dataset) => {
+            text(&mut hash, "dataset");
+            array(&mut hash, &dataset.array);
+        }
+    }
+    for (name, value) in object.attributes().iter().filter(|(name, _)| !is_outside_digest(name)) {
+        text(&mut hash, name);
+        array(&mut hash, value);
+    }
+    hexadecimal(&hash.finalize())
+}
+
+fn array(hash: &mut Sha256, array: &Array) {
+    text(hash, array.data.type_name());
+    hash.update((array.shape.len() as u64).to_le_bytes());
+    array.shape.iter().for_each(|length| hash.update((*length as u64).to_le_bytes()));
+    array.data.for_each_byte_block(|block| hash.update(block));
+}
+
+fn text(hash: &mut Sha256, text: &str) {
+    hash.update((text.len() as u64).to_le_bytes());
+    hash.update(text);
+}
+
+fn hexadecimal(bytes: &[u8]) -> String {
+    bytes.iter().fold(String::new(), |mut text, byte| {
+        let _ = write!(text, "{byte:02x}");
+        text
+    })
+}
+
+/// Puts the digests into a tree: `sha256` on every object, `digest` on the root.
+pub(super) fn sign(root: &mut Group) -> Digest {
+    let digest = of_tree(root);
+    sign_below(root);
+    root.attributes.insert(name::DIGEST.to_owned(), Array::text(digest.as_str()));
+    digest
+}
+
+fn sign_below(group: &mut Group) {
+    let own = of_object(Object::Group(group));
+    group.attributes.insert(name::SHA256.to_owned(), Array::text(own));
+    for (_, dataset) in &mut group.datasets {
+        let own = of_object(Object::Dataset(dataset));
+        dataset.attributes.insert(name::SHA256.to_owned(), Array::text(own));
+    }
+    group.groups.iter_mut().for_each(|(_, group)| sign_below(group));
+}

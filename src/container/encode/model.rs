@@ -1,0 +1,108 @@
+//! A fitted model: its terms and parameters, covariance, residuals, separability.
+
+use super::super::error::EncodeError;
+use super::super::layout::name;
+use super::super::tree::{Array, Data, Dataset, Group};
+use super::faithful;
+use super::parts::emission_axis;
+use crate::dataset::{FittedParameter, FittedTerm, Model, Separability};
+
+pub(super) fn model(model: &Model) -> Result<Group, EncodeError> {
+    let mut group = Group::default();
+    group.optional_text(name::TITLE, model.title.as_ref())?;
+    group.text(name::MEASUREMENT, model.measurement.as_str())?;
+    group.text(name::DATA_DIGEST, &model.data_digest)?;
+    group.text(name::REDUCTION, &model.reduction)?;
+    group.text(name::REFERENCE, &faithful(name::REFERENCE, &model.reference)?)?;
+    group.text(name::UNIT, &model.unit)?;
+    group.text(name::METHOD, &model.method)?;
+    group.attribute(name::CONVERGED, Data::U8(vec![u8::from(model.converged)]));
+    group.attribute(name::RESIDUAL_RMS, Data::F64(vec![model.residuals.rms]));
+    group.attribute(name::REDUCED_CHI_SQUARE, Data::F64(vec![model.residuals.reduced_chi_square]));
+    group.attribute(name::RESIDUAL_COUNT, Data::U64(vec![model.residuals.count]));
+    group.attribute(name::RESIDUAL_LEFT_OUT, Data::U64(vec![model.residuals.left_out]));
+    emission_axis(&mut group, &model.emission)?;
+    covariance(&mut group, model)?;
+    if !model.identifiability.is_empty() {
+        group.texts(name::IDENTIFIABILITY, model.identifiability.iter().map(String::as_str), "")?;
+    }
+    for (position, fitted) in model.terms.iter().enumerate() {
+        group.groups.push((format!("{}{position}", name::TERM), term(fitted)?));
+    }
+    if let Some(check) = &model.separability {
+        group.groups.push((name::SEPARABILITY.to_owned(), separability(check)));
+    }
+    Ok(group)
+}
+
+/// Both axes run over the same parameters, yet have a scale each: CF forbids a dimension twice in one variable.
+fn covariance(group: &mut Group, model: &Model) -> Result<(), EncodeError> {
+    let (rows, columns) = model.covariance.dim();
+    group.index_scale(name::COVARIANCE_ROW, rows);
+    group.index_scale(name::COVARIANCE_COLUMN, columns);
+    let array = Array { shape: vec![rows, columns], data: Data::F64(model.covariance.iter().copied().collect()) };
+    let axes = vec![name::COVARIANCE_ROW.to_owned(), name::COVARIANCE_COLUMN.to_owned()];
+    group
+        .put(name::COVARIANCE, Dataset { axes, ..Dataset::new(array) })
+        .long_name("covariance of the parameters; the unit of an element is the product of the units of its two");
+    let names = model.covariance_parameters.iter().map(String::as_str);
+    group.texts(name::COVARIANCE_PARAMETERS, names, name::COVARIANCE_ROW)?;
+    Ok(())
+}
+
+fn term(term: &FittedTerm) -> Result<Group, EncodeError> {
+    let mut group = Group::default();
+    group.text(name::KIND, term.kind.name())?;
+    if let Some(distribution) = term.distribution {
+        group.text(name::DISTRIBUTION, distribution.name())?;
+    }
+    if let Some(denominator) = term.denominator {
+        group.text(name::DENOMINATOR, denominator.name())?;
+    }
+    for (position, fitted) in term.parameters.iter().enumerate() {
+        parameter(&mut group, &format!("{}{position}", name::PARAMETER), fitted)?;
+    }
+    Ok(group)
+}
+
+fn parameter(group: &mut Group, name: &str, parameter: &FittedParameter) -> Result<(), EncodeError> {
+    let value = group.vector(name, Data::F64(parameter.value.clone()), "");
+    value.checked_text(name::PARAMETER_NAME, &parameter.name)?.checked_text(name::UNITS, &parameter.unit)?;
+    let axis = format!("{name}{}", name::INDEX);
+    let uncertainty = Data::F64(parameter.standard_uncertainty.clone());
+    group
+        .vector(&format!("{name}{}", name::SUFFIX_U), uncertainty, &axis)
+        .checked_text(name::UNITS, &parameter.unit)?
+        .long_name("standard uncertainty (k = 1) from independent errors");
+    if !parameter.shared_relative_uncertainty.is_empty() {
+        let shared = Data::F64(parameter.shared_relative_uncertainty.clone());
+        group
+            .vector(&format!("{name}{}", name::SUFFIX_SHARED), shared, &axis)
+            .unit("1")
+            .long_name("relative standard uncertainty from errors shared by all rows");
+    }
+    Ok(())
+}
+
+fn separability(check: &Separability) -> Group {
+    let mut group = Group::default();
+    group.scale(name::THETA_I, &check.theta_i_deg, "degree", "signed in-plane angle of incidence");
+    group.scale(name::THETA_V, &check.theta_v_deg, "degree", "signed in-plane angle of viewing");
+    for (name, values, axis) in [
+        (name::MEAN_OVER_VIEWING, &check.mean_over_viewing, name::THETA_I),
+        (name::SPREAD_OVER_VIEWING, &check.spread_over_viewing, name::THETA_I),
+        (name::MEAN_OVER_INCIDENCE, &check.mean_over_incidence, name::THETA_V),
+        (name::SPREAD_OVER_INCIDENCE, &check.spread_over_incidence, name::THETA_V),
+    ] {
+        group.vector(name, Data::F64(values.clone()), axis);
+    }
+    for (name, value) in [
+        (name::COSINE_AMPLITUDE, check.cosine_amplitude),
+        (name::COSINE_RELATIVE_RMS, check.cosine_relative_rms),
+        (name::CONSTANCY_RELATIVE_RMS, check.constancy_relative_rms),
+        (name::RANK_ONE_RELATIVE_RMS, check.rank_one_relative_rms),
+    ] {
+        group.attribute(name, Data::F64(vec![value]));
+    }
+    group
+}

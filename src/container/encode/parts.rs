@@ -1,0 +1,135 @@
+//! Samples, instruments, lights, white references, provenance; and what several parts share: the emission axis and the
+//! quantity.
+
+use super::super::error::EncodeError;
+use super::super::layout::name;
+use super::super::tree::{Data, Dataset, Group};
+use super::{faithful, member_name, without_nul};
+use crate::dataset::{Instrument, Light, LightSpectrum, Provenance, Sample, WhiteReference};
+use crate::quantity::{Bandpass, EmissionAxis, Flag, Quantity, WavelengthAxis};
+
+pub(super) fn sample(sample: &Sample) -> Result<Group, EncodeError> {
+    let mut group = Group::default();
+    group.optional_text(name::TITLE, sample.title.as_ref())?;
+    group.optional_text(name::MATERIAL, sample.material.as_ref())?;
+    group.optional_text(name::MARK, sample.mark.as_ref())?;
+    group.attribute(name::SIMULATED, Data::U8(vec![u8::from(sample.simulated)]));
+    Ok(group)
+}
+
+pub(super) fn instrument(instrument: &Instrument) -> Result<Group, EncodeError> {
+    let mut group = Group::default();
+    group.optional_text(name::MODEL_NAME, instrument.model.as_ref())?;
+    group.optional_text(name::SERIAL, instrument.serial.as_ref())?;
+    group.optional_text(name::APERTURE, instrument.aperture.as_ref())?;
+    group.optional_text(name::ACCESSORIES, instrument.accessories.as_ref())?;
+    group.optional_number(name::DISTANCE_MM, instrument.distance_mm);
+    Ok(group)
+}
+
+pub(super) fn light(light: &Light) -> Result<Group, EncodeError> {
+    let mut group = Group::default();
+    group.optional_text(name::TITLE, light.title.as_ref())?;
+    if let Some(spectrum) = &light.spectrum {
+        light_spectrum(&mut group, spectrum)?;
+    }
+    Ok(group)
+}
+
+fn light_spectrum(group: &mut Group, spectrum: &LightSpectrum) -> Result<(), EncodeError> {
+    wavelength_axis(group, &spectrum.axis)?;
+    certified_factor(group, &spectrum.quantity, name::WAVELENGTH);
+    group.vector(name::VALUE_FLAG, Data::U16(spectrum.flags.clone()), name::WAVELENGTH);
+    let value = group.vector(name::VALUE, Data::F64(spectrum.values.clone()), name::WAVELENGTH);
+    quantity(value, &spectrum.quantity)?;
+    value.checked_text(name::ANCILLARY, name::VALUE_FLAG)?;
+    value_flags(group);
+    Ok(())
+}
+
+pub(super) fn white_reference(reference: &WhiteReference) -> Result<Group, EncodeError> {
+    let mut group = Group::default();
+    group.optional_text(name::TITLE, reference.title.as_ref())?;
+    group.optional_text(name::CERTIFICATE, reference.certificate.as_ref())?;
+    group.optional_number(name::CERTIFIED_RELATIVE_U, reference.certified_relative_uncertainty);
+    if !reference.certified_nm.is_empty() {
+        group.scale(name::CERTIFIED_WAVELENGTH, &reference.certified_nm, "nm", "wavelength in air");
+    }
+    if !reference.certified_factor.is_empty() {
+        let factor = Data::F64(reference.certified_factor.clone());
+        group
+            .vector(name::CERTIFIED_FACTOR, factor, name::CERTIFIED_WAVELENGTH)
+            .unit("1")
+            .long_name("certified radiance factor");
+    }
+    Ok(group)
+}
+
+pub(super) fn provenance(provenance: &Provenance) -> Result<Group, EncodeError> {
+    let mut group = Group::default();
+    group.json(name::RECEIPTS, &provenance.receipts)?;
+    group.json(name::STEPS, &provenance.steps)?;
+    Ok(group)
+}
+
+/// The emission axis as a dimension scale; returns its name.
+pub(super) fn emission_axis(group: &mut Group, axis: &EmissionAxis) -> Result<&'static str, EncodeError> {
+    match axis {
+        EmissionAxis::Wavelengths(axis) => {
+            wavelength_axis(group, axis)?;
+            Ok(name::WAVELENGTH)
+        }
+        EmissionAxis::Band { band } => {
+            group.index_scale(name::BAND, 1);
+            if let (Some(band), Some(scale)) = (band, group.dataset_mut(name::BAND)) {
+                for (name, end) in [(name::FROM_NM, band.from_nm), (name::TO_NM, band.to_nm)] {
+                    let end = super::Array::scalar(Data::F64(vec![end]));
+                    scale.attributes.insert(name.to_owned(), end);
+                }
+            }
+            Ok(name::BAND)
+        }
+    }
+}
+
+fn wavelength_axis(group: &mut Group, axis: &WavelengthAxis) -> Result<(), EncodeError> {
+    group.scale(name::WAVELENGTH, &axis.nm, "nm", "emission wavelength in air");
+    if let Bandpass::Stated { fwhm_nm, shape } = &axis.bandpass {
+        let shape = member_name(shape)?;
+        let fwhm = group.vector(name::FWHM, Data::F64(fwhm_nm.clone()), name::WAVELENGTH);
+        fwhm.unit("nm").long_name("full width at half maximum of the instrument");
+        fwhm.checked_text(name::SHAPE, &shape)?;
+    }
+    Ok(())
+}
+
+/// What the values of a dataset mean, as its attributes.
+pub(super) fn quantity(dataset: &mut Dataset, quantity: &Quantity) -> Result<(), EncodeError> {
+    dataset.unit(quantity.kind.unit()).long_name(quantity.kind.name());
+    dataset.checked_text(name::QUANTITY, quantity.kind.name())?;
+    dataset.checked_text(name::PART, quantity.part.name())?;
+    dataset.checked_text(name::NORMALISED_AT, quantity.normalised_at.name())?;
+    dataset.checked_text(name::BASIS, quantity.basis.name())?;
+    dataset.checked_text(name::REFERENCE, &faithful(name::REFERENCE, &quantity.reference)?)?;
+    let light = faithful(name::REFERENCE_LIGHT, &quantity.reference_light)?;
+    dataset.checked_text(name::REFERENCE_LIGHT, &without_nul(&light)?)?;
+    Ok(())
+}
+
+pub(super) fn certified_factor(group: &mut Group, quantity: &Quantity, axis: &str) {
+    if !quantity.certified_factor.is_empty() {
+        group
+            .vector(name::CERTIFIED_FACTOR, Data::F64(quantity.certified_factor.clone()), axis)
+            .unit("1")
+            .long_name("certified radiance factor of the reference, contained in the values");
+    }
+}
+
+/// Describes `value_flag` in the words of CF.
+pub(super) fn value_flags(group: &mut Group) {
+    let masks = Data::U16(Flag::ALL.iter().map(|flag| flag.bit()).collect());
+    let meanings = Flag::ALL.map(Flag::name);
+    if let Some(flags) = group.dataset_mut(name::VALUE_FLAG) {
+        flags.flags(masks, &meanings).long_name("why a value is missing or may not be used");
+    }
+}

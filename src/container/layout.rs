@@ -1,0 +1,231 @@
+//! The one table of every path and attribute name of the standard, with type, unit and meaning. Reader, writer, rules
+//! and the tables of the specification take the names from here.
+
+/// Version of the standard that is written.
+pub const VERSION: &str = "1.0";
+/// The major version that is understood.
+pub const MAJOR: u64 = 1;
+/// The minor version that is understood in full.
+pub const MINOR: u64 = 0;
+/// Value of the root attribute `Conventions`.
+pub const CONVENTIONS: &str = "CF-1.11 BBRF-1.0";
+
+/// Names of groups, datasets and attributes.
+#[allow(missing_docs)]
+pub mod name {
+    pub const SAMPLE: &str = "sample";
+    pub const INSTRUMENT: &str = "instrument";
+    pub const LIGHT: &str = "light";
+    pub const WHITE_REFERENCE: &str = "white_reference";
+    pub const MEASUREMENT: &str = "measurement";
+    pub const MODEL: &str = "model";
+    pub const PROVENANCE: &str = "provenance";
+    pub const DERIVATION: &str = "derivation";
+    pub const SEPARABILITY: &str = "separability";
+    pub const TERM: &str = "term_";
+    pub const PARAMETER: &str = "parameter_";
+    pub const COMPONENT: &str = "value_u_shared_";
+    pub const INDEX: &str = "_index";
+
+    pub const CONVENTIONS: &str = "Conventions";
+    pub const BBRF_VERSION: &str = "bbrf_version";
+    pub const DIGEST: &str = "digest";
+    pub const SHA256: &str = "sha256";
+    pub const TITLE: &str = "title";
+    pub const LICENSE: &str = "license";
+    pub const CITATION: &str = "citation";
+    pub const POSITION: &str = "position";
+    pub const UNITS: &str = "units";
+    pub const LONG_NAME: &str = "long_name";
+    pub const COORDINATES: &str = "coordinates";
+    pub const ANCILLARY: &str = "ancillary_variables";
+    pub const FLAG_MASKS: &str = "flag_masks";
+    pub const FLAG_MEANINGS: &str = "flag_meanings";
+
+    pub const MATERIAL: &str = "material";
+    pub const MARK: &str = "mark";
+    pub const SIMULATED: &str = "simulated";
+    pub const MODEL_NAME: &str = "model";
+    pub const SERIAL: &str = "serial";
+    pub const APERTURE: &str = "aperture";
+    pub const ACCESSORIES: &str = "accessories";
+    pub const DISTANCE_MM: &str = "distance_mm";
+    pub const CERTIFICATE: &str = "certificate";
+    pub const CERTIFIED_WAVELENGTH: &str = "certified_wavelength";
+    pub const CERTIFIED_FACTOR: &str = "certified_factor";
+    pub const CERTIFIED_RELATIVE_U: &str = "certified_relative_uncertainty";
+
+    pub const QUANTITY: &str = "quantity";
+    pub const PART: &str = "part";
+    pub const NORMALISED_AT: &str = "normalised_at";
+    pub const BASIS: &str = "basis";
+    pub const REFERENCE: &str = "reference";
+    pub const REFERENCE_LIGHT: &str = "reference_light";
+    pub const ROLE: &str = "role";
+
+    pub const ACQUISITION: &str = "acquisition";
+    pub const WAVELENGTH: &str = "wavelength_emission";
+    pub const FWHM: &str = "wavelength_emission_fwhm";
+    pub const SHAPE: &str = "bandpass_shape";
+    pub const BAND: &str = "band";
+    pub const FROM_NM: &str = "from_nm";
+    pub const TO_NM: &str = "to_nm";
+    pub const THETA_I: &str = "theta_i";
+    pub const PHI_I: &str = "phi_i";
+    pub const THETA_V: &str = "theta_v";
+    pub const PHI_V: &str = "phi_v";
+    pub const STATED: &str = "stated";
+    pub const EXCITATION: &str = "excitation";
+    pub const ORDER: &str = "order";
+    pub const REPEATS: &str = "repeats";
+    pub const TIME: &str = "time";
+    pub const EXPOSURE: &str = "exposure";
+    pub const QUALITY_CODE: &str = "quality_code";
+    pub const EXCITATION_STATE: &str = "excitation_state";
+    pub const EXCITATION_STATED: &str = "excitation_stated";
+    pub const EXCITATION_LIGHT: &str = "excitation_light";
+    pub const EXCITATION_WAVELENGTH: &str = "excitation_wavelength";
+    pub const EXCITATION_FWHM: &str = "excitation_fwhm";
+    pub const EXCITATION_FILTER: &str = "excitation_filter";
+    pub const EXCITATION_POLARISATION: &str = "excitation_polarisation";
+    pub const VALUE: &str = "value";
+    pub const VALUE_U: &str = "value_u";
+    pub const VALUE_FLAG: &str = "value_flag";
+    pub const CAUSE: &str = "cause";
+    pub const CORRELATED_OVER: &str = "correlated_over";
+    pub const NUMERATOR: &str = "numerator";
+    pub const NUMERATOR_ROW: &str = "numerator_row";
+    pub const REFERENCE_GROUP: &str = "reference_group";
+    pub const ROW_REFERENCE: &str = "row_reference";
+    pub const DARK: &str = "dark";
+
+    pub const DATA_DIGEST: &str = "data_digest";
+    pub const REDUCTION: &str = "reduction";
+    pub const UNIT: &str = "unit";
+    pub const CONVERGED: &str = "converged";
+    pub const METHOD: &str = "method";
+    pub const KIND: &str = "kind";
+    pub const DISTRIBUTION: &str = "distribution";
+    pub const DENOMINATOR: &str = "denominator";
+    pub const PARAMETER_NAME: &str = "parameter";
+    pub const SUFFIX_U: &str = "_u";
+    pub const SUFFIX_SHARED: &str = "_u_shared";
+    pub const COVARIANCE: &str = "covariance";
+    pub const COVARIANCE_PARAMETERS: &str = "covariance_parameters";
+    pub const COVARIANCE_ROW: &str = "covariance_row";
+    pub const COVARIANCE_COLUMN: &str = "covariance_column";
+    pub const RESIDUAL_RMS: &str = "residual_rms";
+    pub const REDUCED_CHI_SQUARE: &str = "residual_reduced_chi_square";
+    pub const RESIDUAL_COUNT: &str = "residual_count";
+    pub const RESIDUAL_LEFT_OUT: &str = "residual_left_out";
+    pub const IDENTIFIABILITY: &str = "identifiability";
+    pub const MEAN_OVER_VIEWING: &str = "mean_over_viewing";
+    pub const SPREAD_OVER_VIEWING: &str = "spread_over_viewing";
+    pub const MEAN_OVER_INCIDENCE: &str = "mean_over_incidence";
+    pub const SPREAD_OVER_INCIDENCE: &str = "spread_over_incidence";
+    pub const COSINE_AMPLITUDE: &str = "cosine_amplitude";
+    pub const COSINE_RELATIVE_RMS: &str = "cosine_relative_rms";
+    pub const CONSTANCY_RELATIVE_RMS: &str = "constancy_relative_rms";
+    pub const RANK_ONE_RELATIVE_RMS: &str = "rank_one_relative_rms";
+    pub const RECEIPTS: &str = "receipts";
+    pub const STEPS: &str = "steps";
+}
+
+/// The optional fields of a row, in the order of their bits in `stated`.
+pub const ROW_FIELDS: [&str; 5] = [GEOMETRY, name::EXCITATION, name::TIME, name::EXPOSURE, name::QUALITY_CODE];
+const GEOMETRY: &str = "geometry";
+/// The optional fields of an excitation state, in the order of their bits in `excitation_stated`.
+pub const EXCITATION_FIELDS: [&str; 5] = ["light", "wavelength", "fwhm", "filter", "polarisation"];
+
+/// Attributes that other programs add when they write or rewrite a file. They are no content.
+pub const FOREIGN_ATTRIBUTES: [&str; 6] =
+    ["DIMENSION_LIST", "REFERENCE_LIST", "CLASS", "NAME", "_FillValue", "_NCProperties"];
+
+/// True for an attribute that carries no content of the standard: foreign ones and the digests themselves.
+#[must_use]
+pub fn is_outside_digest(attribute: &str) -> bool {
+    FOREIGN_ATTRIBUTES.contains(&attribute)
+        || attribute.starts_with("_Netcdf4")
+        || attribute == name::SHA256
+        || attribute == name::DIGEST
+}
+
+/// What an entry of the table is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kind {
+    /// A group.
+    Group,
+    /// A dataset of that element type.
+    Dataset(&'static str),
+    /// An attribute of that element type.
+    Attribute(&'static str),
+}
+
+/// One row of the table.
+#[derive(Debug, Clone, Copy)]
+pub struct Entry {
+    /// Path; `*` stands for an identifier or a number, `@` precedes an attribute.
+    pub path: &'static str,
+    /// Group, dataset or attribute, and its type.
+    pub kind: Kind,
+    /// Unit, `1` for none; empty for texts and groups; `*` where the quantity gives it.
+    pub unit: &'static str,
+    /// What it is.
+    pub meaning: &'static str,
+}
+
+const fn group(path: &'static str, meaning: &'static str) -> Entry {
+    Entry { path, kind: Kind::Group, unit: "", meaning }
+}
+
+const fn dataset(path: &'static str, kind: &'static str, unit: &'static str, meaning: &'static str) -> Entry {
+    Entry { path, kind: Kind::Dataset(kind), unit, meaning }
+}
+
+const fn attribute(path: &'static str, kind: &'static str, unit: &'static str, meaning: &'static str) -> Entry {
+    Entry { path, kind: Kind::Attribute(kind), unit, meaning }
+}
+
+#[path = "layout_table.rs"]
+mod table;
+pub use table::TABLE;
+
+/// The row of the table for a path of a file, as in `/measurement/scan/value@units`.
+#[must_use]
+pub fn find(path: &str) -> Option<&'static Entry> {
+    TABLE.iter().find(|entry| matches(entry.path, path))
+}
+
+/// True where the path has the form of the pattern: `*` stands for one or more characters within a name, `/**` for any
+/// groups or none.
+fn matches(pattern: &str, path: &str) -> bool {
+    match (pattern.split_once('@'), path.split_once('@')) {
+        (Some((pattern, expected)), Some((path, attribute))) => {
+            name_matches(expected, attribute) && object_matches(pattern, path)
+        }
+        (None, None) => object_matches(pattern, path),
+        _ => false,
+    }
+}
+
+fn object_matches(pattern: &str, path: &str) -> bool {
+    let names: Vec<&str> = path.split('/').filter(|name| !name.is_empty()).collect();
+    match pattern.strip_prefix("/**") {
+        Some("") => true,
+        Some(last) => names.last().is_some_and(|name| name_matches(last.trim_start_matches('/'), name)),
+        None => {
+            let patterns: Vec<&str> = pattern.split('/').filter(|name| !name.is_empty()).collect();
+            let equal = |(pattern, name): (&&str, &&str)| name_matches(pattern, name);
+            patterns.len() == names.len() && patterns.iter().zip(&names).all(equal)
+        }
+    }
+}
+
+fn name_matches(pattern: &str, name: &str) -> bool {
+    match pattern.split_once('*') {
+        None => pattern == name,
+        Some((before, after)) => {
+            name.len() > before.len() + after.len() && name.starts_with(before) && name.ends_with(after)
+        }
+    }
+}

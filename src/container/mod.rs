@@ -1,0 +1,35 @@
+//! The document as an HDF5 file: one table of every path and name, writing through libhdf5, reading through a pure-Rust
+//! reader, and the digest of the content.
+//!
+//! A document becomes a tree of groups, datasets and attributes (`encode`), which alone knows the layout; the tree
+//! becomes bytes (`write`), which alone knows libhdf5. Reading goes the same way back (`read`, `decode`).
+//!
+//! *May use:* `dataset`, `quantity`.
+//!
+//! *Invariant:* what is written is read back to the bit; the same document gives the same bytes; a file on disk is the
+//! old one or the new one. Whatever the bytes, reading ends in a document or an error, within [`Limits`].
+
+mod decode;
+mod digest;
+mod encode;
+mod error;
+pub mod layout;
+mod limits;
+mod open;
+mod read;
+pub mod replace;
+#[doc(hidden)]
+pub mod tree;
+#[cfg(feature = "write")]
+mod write;
+
+pub use digest::{Digest, digest, measurement_digest};
+pub use error::{EncodeError, ReadError, WriteError};
+pub use limits::Limits;
+pub use open::{Opened, open_verified, read_bytes, read_file, read_tree};
+
+#[cfg(feature = "write")]
+pub use save::{document_bytes, tree_bytes, write_file};
+
+#[cfg(feature = "write")]
+mod save;

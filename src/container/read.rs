@@ -1,0 +1,198 @@
+//! The bytes of an HDF5 file as a tree, through the pure-Rust reader, within limits.
+//!
+//! Anything wrong ends the read: half a tree is no tree.
+
+use std::sync::Arc;
+
+use hdf5_reader::error::Error;
+use hdf5_reader::{Attribute, Datatype, Hdf5File, OpenOptions, StringSize};
+
+use super::error::ReadError;
+use super::limits::Limits;
+use super::tree::{Array, Attributes, Data, Dataset, Group};
+use crate::dataset::Place;
+
+/// The tree of a file.
+///
+/// # Errors
+/// [`ReadError`] when the bytes are no HDF5, damaged, or beyond the limits.
+pub fn from_bytes(bytes: &[u8], limits: &Limits) -> Result<Group, ReadError> {
+    let size = bytes.len() as u64;
+    within("bytes", size, limits.file_bytes, "/")?;
+    let decoded = limits.decoded_bytes(size);
+    let most = usize::try_from(decoded).unwrap_or(usize::MAX);
+    let options = OpenOptions::default()
+        .with_chunk_cache_bytes(0)
+        .with_max_chunk_bytes(most)
+        .with_max_read_bytes(most)
+        .with_max_object_header_bytes(bytes.len());
+    let file = Hdf5File::from_shared_bytes_with_options(Arc::from(bytes), options)
+        .map_err(|error| ReadError::encoding("/", error))?;
+    let root = file.root_group().map_err(|error| ReadError::encoding("/", error))?;
+    let mut walk = Walk { limits, decoded_left: decoded, objects: 0, decoded_limit: decoded };
+    walk.group(&root, "", 0)
+}
+
+fn within(what: &'static str, found: u64, limit: u64, path: &str) -> Result<(), ReadError> {
+    if found <= limit {
+        return Ok(());
+    }
+    Err(ReadError::Limit { place: Box::new(Place::path(path)), what, found, limit })
+}
+
+struct Walk<'a> {
+    limits: &'a Limits,
+    decoded_limit: u64,
+    decoded_left: u64,
+    objects: u64,
+}
+
+impl Walk<'_> {
+    fn group(&mut self, group: &hdf5_reader::group::Group, path: &str, depth: usize) -> Result<Group, ReadError> {
+        let shown = if path.is_empty() { "/" } else { path };
+        let failed = |error: Error| ReadError::encoding(shown, error);
+        within("levels of groups", depth as u64, self.limits.depth as u64, shown)?;
+        self.count(1, shown)?;
+        let mut tree =
+            Group { attributes: self.attributes(&group.attributes().map_err(failed)?, shown)?, ..Group::default() };
+        let (groups, datasets) = group.members().map_err(failed)?;
+        for dataset in &datasets {
+            let name = last_name(dataset.name());
+            let read = self.dataset(dataset, &format!("{path}/{name}"))?;
+            tree.datasets.push((name.to_owned(), read));
+        }
+        for child in &groups {
+            let name = last_name(child.name());
+            let read = self.group(child, &format!("{path}/{name}"), depth + 1)?;
+            tree.groups.push((name.to_owned(), read));
+        }
+        Ok(tree)
+    }
+
+    fn dataset(&mut self, dataset: &hdf5_reader::Dataset, path: &str) -> Result<Dataset, ReadError> {
+        self.count(1, path)?;
+        let attributes = self.attributes(&dataset.attributes(), path)?;
+        let shape = lengths(dataset.shape(), path)?;
+        let data = self.values(dataset, path)?;
+        let is_scale = attributes.get("CLASS").and_then(Array::as_text) == Some("DIMENSION_SCALE");
+        Ok(Dataset { attributes, is_scale, ..Dataset::new(Array { shape, data }) })
+    }
+
+    fn values(&mut self, dataset: &hdf5_reader::Dataset, path: &str) -> Result<Data, ReadError> {
+        let failed = |error: Error| ReadError::encoding(path, error);
+        let kind = dataset.dtype();
+        if is_string(kind) {
+            let width = hdf5_reader::dtype_element_size(kind).map_err(failed)?.max(1);
+            self.spend(dataset.num_elements().map_err(failed)?, width, path)?;
+            return dataset.read_strings().map(Data::Text).map_err(failed);
+        }
+        macro_rules! read {
+            ($($variant:ident: $type:ty),+) => {
+                match type_of(kind) {
+                    $(Some(Numeric::$variant) => {
+                        self.spend(dataset.num_elements().map_err(failed)?, size_of::<$type>(), path)?;
+                        let array = dataset.read_array_uncached::<$type>().map_err(failed)?;
+                        Ok(Data::$variant(array.into_raw_vec_and_offset().0))
+                    })+
+                    None => Ok(Data::Other(format!("{kind:?}"))),
+                }
+            };
+        }
+        read!(U8: u8, U16: u16, U32: u32, U64: u64, I8: i8, I16: i16, I32: i32, I64: i64, F32: f32, F64: f64)
+    }
+
+    fn attributes(&mut self, attributes: &[Attribute], path: &str) -> Result<Attributes, ReadError> {
+        self.count(attributes.len() as u64, path)?;
+        let read = |attribute: &Attribute| {
+            let path = format!("{path}@{}", attribute.name);
+            Ok((attribute.name.clone(), attribute_array(attribute, &path)?))
+        };
+        attributes.iter().map(read).collect()
+    }
+
+    fn count(&mut self, objects: u64, path: &str) -> Result<(), ReadError> {
+        self.objects += objects;
+        within("groups, datasets and attributes", self.objects, self.limits.objects, path)
+    }
+
+    /// Takes the decoded size of an array from what the file may still decode to.
+    fn spend(&mut self, elements: u64, width: usize, path: &str) -> Result<(), ReadError> {
+        let bytes = elements.saturating_mul(width as u64);
+        within(
+            "decoded bytes",
+            bytes.saturating_add(self.decoded_limit - self.decoded_left),
+            self.decoded_limit,
+            path,
+        )?;
+        self.decoded_left -= bytes;
+        Ok(())
+    }
+}
+
+fn last_name(path: &str) -> &str {
+    path.rsplit('/').next().unwrap_or(path)
+}
+
+fn lengths(shape: &[u64], path: &str) -> Result<Vec<usize>, ReadError> {
+    let length = |length: &u64| {
+        usize::try_from(*length).map_err(|_| ReadError::unexpected(path, format!("an axis of {length}"), "less"))
+    };
+    shape.iter().map(length).collect()
+}
+
+fn attribute_array(attribute: &Attribute, path: &str) -> Result<Array, ReadError> {
+    let failed = |error: Error| ReadError::encoding(path, error);
+    let shape = lengths(&attribute.shape, path)?;
+    let data = if is_string(&attribute.datatype) {
+        let empty = attribute.shape.contains(&0);
+        Data::Text(if empty { Vec::new() } else { attribute.read_strings().map_err(failed)? })
+    } else {
+        macro_rules! read {
+            ($($variant:ident: $type:ty),+) => {
+                match type_of(&attribute.datatype) {
+                    $(Some(Numeric::$variant) => Data::$variant(attribute.read_1d::<$type>().map_err(failed)?),)+
+                    None => Data::Other(format!("{:?}", attribute.datatype)),
+                }
+            };
+        }
+        read!(U8: u8, U16: u16, U32: u32, U64: u64, I8: i8, I16: i16, I32: i32, I64: i64, F32: f32, F64: f64)
+    };
+    Ok(Array { shape, data })
+}
+
+enum Numeric {
+    U8,
+    U16,
+    U32,
+    U64,
+    I8,
+    I16,
+    I32,
+    I64,
+    F32,
+    F64,
+}
+
+fn type_of(kind: &Datatype) -> Option<Numeric> {
+    Some(match kind {
+        Datatype::FixedPoint { size: 1, signed: false, .. } => Numeric::U8,
+        Datatype::FixedPoint { size: 2, signed: false, .. } => Numeric::U16,
+        Datatype::FixedPoint { size: 4, signed: false, .. } => Numeric::U32,
+        Datatype::FixedPoint { size: 8, signed: false, .. } => Numeric::U64,
+        Datatype::FixedPoint { size: 1, signed: true, .. } => Numeric::I8,
+        Datatype::FixedPoint { size: 2, signed: true, .. } => Numeric::I16,
+        Datatype::FixedPoint { size: 4, signed: true, .. } => Numeric::I32,
+        Datatype::FixedPoint { size: 8, signed: true, .. } => Numeric::I64,
+        Datatype::FloatingPoint { size: 4, .. } => Numeric::F32,
+        Datatype::FloatingPoint { size: 8, .. } => Numeric::F64,
+        _ => return None,
+    })
+}
+
+fn is_string(kind: &Datatype) -> bool {
+    match kind {
+        Datatype::String { size: StringSize::Fixed(_) | StringSize::Variable, .. } => true,
+        Datatype::VarLen { kind, .. } => matches!(kind, hdf5_reader::VarLenKind::String),
+        _ => false,
+    }
+}

@@ -1,0 +1,54 @@
+//! Writing a document: encode, sign, check that it reads back, build, replace.
+
+use std::io::Write;
+use std::path::Path;
+
+use super::decode::decode;
+use super::digest::{Digest, of_tree, sign};
+use super::encode::encode;
+use super::error::{EncodeError, WriteError};
+use super::replace::write_whole;
+use super::tree::Group;
+use super::write::to_bytes;
+use crate::dataset::Document;
+
+/// Writes a document to a file, whole or not at all, and returns its digest.
+///
+/// # Errors
+/// [`WriteError`]; the old file, if there was one, is then untouched.
+pub fn write_file(document: &Document, path: &Path) -> Result<Digest, WriteError> {
+    let (bytes, digest) = document_bytes(document)?;
+    write_whole(path, |file| file.write_all(&bytes))
+        .map_err(|source| WriteError::Io { path: path.to_owned(), source })?;
+    Ok(digest)
+}
+
+/// The bytes of the file that [`write_file`] writes, with the digest of the document.
+///
+/// # Errors
+/// [`WriteError`] when the document has no form in the standard or libhdf5 refuses.
+pub fn document_bytes(document: &Document) -> Result<(Vec<u8>, Digest), WriteError> {
+    let mut tree = encoded(document)?;
+    let digest = sign(&mut tree);
+    Ok((to_bytes(&tree)?, digest))
+}
+
+/// The tree of a consistent document, known to read back as the same document.
+fn encoded(document: &Document) -> Result<Group, EncodeError> {
+    document.check()?;
+    let tree = encode(document)?;
+    let read_back = decode(&tree).map_err(|error| EncodeError::NotReadBack(error.to_string()))?;
+    if of_tree(&encode(&read_back)?) != of_tree(&tree) {
+        return Err(EncodeError::NotReadBack("its content changes on the way".to_owned()));
+    }
+    Ok(tree)
+}
+
+/// The bytes of the file that holds any tree, for tests that need faulty files.
+///
+/// # Errors
+/// [`WriteError::Library`] when libhdf5 refuses.
+#[doc(hidden)]
+pub fn tree_bytes(tree: &Group) -> Result<Vec<u8>, WriteError> {
+    to_bytes(tree)
+}

@@ -1,0 +1,288 @@
+//! The calls of libhdf5 that a file needs, behind safe functions.
+//!
+//! They go to the C functions directly: the safe Rust layer over libhdf5 has neither fixed-length UTF-8 attributes nor
+//! dimension scales, and with those two in hand little would be left for it to do.
+#![allow(unsafe_code)]
+
+use std::ffi::{CString, c_char, c_void};
+use std::ptr;
+
+use hdf5_sys::{h5, h5a, h5d, h5e, h5f, h5g, h5i::hid_t, h5p, h5s, h5t};
+
+use super::super::error::WriteError;
+use super::super::tree::{Array, Data};
+
+#[link(name = "hdf5_hl", kind = "static")]
+unsafe extern "C" {
+    fn H5DSset_scale(dataset: hid_t, name: *const c_char) -> i32;
+    fn H5DSattach_scale(dataset: hid_t, scale: hid_t, axis: u32) -> i32;
+}
+
+/// Attributes and links beyond this number leave the object's header; the default of 8 costs kilobytes per object.
+const MAX_COMPACT: u32 = 64;
+/// Bytes by which the file in memory grows.
+const GROWTH: usize = 1 << 20;
+
+/// An open object of libhdf5, closed when dropped.
+pub(super) struct Handle {
+    id: hid_t,
+    path: String,
+    close: unsafe extern "C" fn(hid_t) -> i32,
+}
+
+impl Drop for Handle {
+    fn drop(&mut self) {
+        // SAFETY: `id` came from the library, is closed once, and `close` is the function of its kind.
+        unsafe { (self.close)(self.id) };
+    }
+}
+
+/// How the values of a dataset lie in the file.
+pub(super) struct Storage {
+    /// Lengths of a chunk; `None` keeps the values in one piece.
+    pub(super) chunk: Option<Vec<usize>>,
+    /// True for data that may be missing: what is not written reads as NaN.
+    pub(super) nan_fill: bool,
+}
+
+fn refused(operation: &'static str, path: &str) -> WriteError {
+    WriteError::Library { operation, path: path.to_owned() }
+}
+
+/// Runs with the library to itself: libhdf5 keeps global state.
+pub(super) fn exclusively<T>(run: impl FnOnce() -> T) -> T {
+    let _guard = hdf5_sys::LOCK.lock();
+    // SAFETY: the lock is held; both calls only set up the library, and may be repeated.
+    unsafe {
+        h5::H5open();
+        h5e::H5Eset_auto2(h5e::H5E_DEFAULT, None, ptr::null_mut());
+    }
+    run()
+}
+
+/// Turns what the library returns into a handle or an error.
+fn handle(
+    id: hid_t,
+    close: unsafe extern "C" fn(hid_t) -> i32,
+    operation: &'static str,
+    path: &str,
+) -> Result<Handle, WriteError> {
+    if id < 0 { Err(refused(operation, path)) } else { Ok(Handle { id, path: path.to_owned(), close }) }
+}
+
+fn done(status: i32, operation: &'static str, path: &str) -> Result<(), WriteError> {
+    if status < 0 { Err(refused(operation, path)) } else { Ok(()) }
+}
+
+fn c_name(name: &str) -> Result<CString, WriteError> {
+    CString::new(name).map_err(|_| refused("a name with U+0000", name))
+}
+
+/// A new file in memory; nothing of it touches the disk.
+pub(super) fn memory_file() -> Result<Handle, WriteError> {
+    let name = c_name("bbrf")?;
+    // SAFETY: the lists are open for as long as they are used; the name ends with NUL.
+    unsafe {
+        let access = handle(h5p::H5Pcreate(*h5p::H5P_CLS_FILE_ACCESS), h5p::H5Pclose, "H5Pcreate", "/")?;
+        done(h5p::H5Pset_fapl_core(access.id, GROWTH, 0), "H5Pset_fapl_core", "/")?;
+        let (low, high) = (h5f::H5F_libver_t::H5F_LIBVER_V18, h5f::H5F_libver_t::H5F_LIBVER_V110);
+        done(h5p::H5Pset_libver_bounds(access.id, low, high), "H5Pset_libver_bounds", "/")?;
+        let create = handle(h5p::H5Pcreate(*h5p::H5P_CLS_FILE_CREATE), h5p::H5Pclose, "H5Pcreate", "/")?;
+        set_up_group(&create)?;
+        let file = h5f::H5Fcreate(name.as_ptr(), h5f::H5F_ACC_TRUNC, create.id, access.id);
+        handle(file, h5f::H5Fclose, "H5Fcreate", "")
+    }
+}
+
+/// No times, creation order of members and attributes, everything in the header.
+fn set_up_group(list: &Handle) -> Result<(), WriteError> {
+    let order = h5p::H5P_CRT_ORDER_TRACKED | h5p::H5P_CRT_ORDER_INDEXED;
+    // SAFETY: `list` is an open creation list of a group.
+    unsafe {
+        done(h5p::H5Pset_link_creation_order(list.id, order), "H5Pset_link_creation_order", &list.path)?;
+        done(
+            h5p::H5Pset_link_phase_change(list.id, MAX_COMPACT, MAX_COMPACT / 2),
+            "H5Pset_link_phase_change",
+            &list.path,
+        )?;
+    }
+    set_up_object(list)
+}
+
+fn set_up_object(list: &Handle) -> Result<(), WriteError> {
+    let order = h5p::H5P_CRT_ORDER_TRACKED | h5p::H5P_CRT_ORDER_INDEXED;
+    // SAFETY: `list` is an open creation list of a group or dataset.
+    unsafe {
+        done(h5p::H5Pset_obj_track_times(list.id, 0), "H5Pset_obj_track_times", &list.path)?;
+        done(h5p::H5Pset_attr_creation_order(list.id, order), "H5Pset_attr_creation_order", &list.path)?;
+        let status = h5p::H5Pset_attr_phase_change(list.id, MAX_COMPACT, MAX_COMPACT / 2);
+        done(status, "H5Pset_attr_phase_change", &list.path)
+    }
+}
+
+impl Handle {
+    /// The bytes of a file in memory.
+    pub(super) fn image(&self) -> Result<Vec<u8>, WriteError> {
+        // SAFETY: a null buffer asks for the size; then the buffer has that size.
+        unsafe {
+            done(h5f::H5Fflush(self.id, h5f::H5F_scope_t::H5F_SCOPE_GLOBAL), "H5Fflush", "/")?;
+            let size = h5f::H5Fget_file_image(self.id, ptr::null_mut(), 0);
+            let mut image = vec![0_u8; usize::try_from(size).map_err(|_| refused("H5Fget_file_image", "/"))?];
+            let written = h5f::H5Fget_file_image(self.id, image.as_mut_ptr().cast(), image.len());
+            if written == size { Ok(image) } else { Err(refused("H5Fget_file_image", "/")) }
+        }
+    }
+
+    /// A new group in this file or group.
+    pub(super) fn create_group(&self, name: &str) -> Result<Handle, WriteError> {
+        let (path, c_name) = (format!("{}/{name}", self.path), c_name(name)?);
+        // SAFETY: `self` is an open file or group, the list is open, the name ends with NUL.
+        unsafe {
+            let list = handle(h5p::H5Pcreate(*h5p::H5P_CLS_GROUP_CREATE), h5p::H5Pclose, "H5Pcreate", &path)?;
+            set_up_group(&list)?;
+            let group = h5g::H5Gcreate2(self.id, c_name.as_ptr(), h5p::H5P_DEFAULT, list.id, h5p::H5P_DEFAULT);
+            handle(group, h5g::H5Gclose, "H5Gcreate", &path)
+        }
+    }
+
+    /// A new dataset in this file or group, with its values.
+    pub(super) fn create_dataset(&self, name: &str, array: &Array, storage: &Storage) -> Result<Handle, WriteError> {
+        let (path, c_name) = (format!("{}/{name}", self.path), c_name(name)?);
+        let element = Element::of(&array.data, &path)?;
+        let space = space(&array.shape, &path)?;
+        let list = creation_list(storage, &path)?;
+        // SAFETY: every id is open; the buffer holds as many elements of the type as the space.
+        unsafe {
+            let dataset = h5d::H5Dcreate2(
+                self.id,
+                c_name.as_ptr(),
+                element.kind.id,
+                space.id,
+                h5p::H5P_DEFAULT,
+                list.id,
+                h5p::H5P_DEFAULT,
+            );
+            let dataset = handle(dataset, h5d::H5Dclose, "H5Dcreate", &path)?;
+            let all = h5s::H5S_ALL;
+            let status =
+                h5d::H5Dwrite(dataset.id, element.kind.id, all, all, h5p::H5P_DEFAULT, element.bytes.as_ptr().cast());
+            done(status, "H5Dwrite", &path)?;
+            Ok(dataset)
+        }
+    }
+
+    /// A new attribute of this object.
+    pub(super) fn write_attribute(&self, name: &str, array: &Array) -> Result<(), WriteError> {
+        let (path, c_name) = (format!("{}@{name}", self.path), c_name(name)?);
+        let element = Element::of(&array.data, &path)?;
+        let space = space(&array.shape, &path)?;
+        // SAFETY: every id is open; the buffer holds as many elements of the type as the space.
+        unsafe {
+            let default = h5p::H5P_DEFAULT;
+            let id = h5a::H5Acreate2(self.id, c_name.as_ptr(), element.kind.id, space.id, default, default);
+            let attribute = handle(id, h5a::H5Aclose, "H5Acreate", &path)?;
+            done(h5a::H5Awrite(attribute.id, element.kind.id, element.bytes.as_ptr().cast()), "H5Awrite", &path)
+        }
+    }
+
+    /// Makes this dataset a dimension scale of that name.
+    pub(super) fn make_scale(&self, name: &str) -> Result<(), WriteError> {
+        let c_name = c_name(name)?;
+        // SAFETY: `self` is an open dataset, the name ends with NUL.
+        done(unsafe { H5DSset_scale(self.id, c_name.as_ptr()) }, "H5DSset_scale", &self.path)
+    }
+
+    /// Attaches a scale to an axis of this dataset.
+    pub(super) fn attach_scale(&self, axis: u32, scale: &Handle) -> Result<(), WriteError> {
+        // SAFETY: both are open datasets.
+        done(unsafe { H5DSattach_scale(self.id, scale.id, axis) }, "H5DSattach_scale", &self.path)
+    }
+}
+
+fn space(shape: &[usize], path: &str) -> Result<Handle, WriteError> {
+    let lengths: Vec<u64> = shape.iter().map(|length| *length as u64).collect();
+    // SAFETY: `lengths` has as many entries as the rank says.
+    let id = unsafe {
+        if shape.is_empty() {
+            h5s::H5Screate(h5s::H5S_class_t::H5S_SCALAR)
+        } else {
+            h5s::H5Screate_simple(rank(shape), lengths.as_ptr(), ptr::null())
+        }
+    };
+    handle(id, h5s::H5Sclose, "H5Screate", path)
+}
+
+/// The format's arrays have at most three axes.
+fn rank(shape: &[usize]) -> i32 {
+    i32::try_from(shape.len()).unwrap_or(i32::MAX)
+}
+
+fn creation_list(storage: &Storage, path: &str) -> Result<Handle, WriteError> {
+    // SAFETY: the list is open; `chunk` has as many entries as the rank says; the fill value has the type named.
+    unsafe {
+        let list = handle(h5p::H5Pcreate(*h5p::H5P_CLS_DATASET_CREATE), h5p::H5Pclose, "H5Pcreate", path)?;
+        set_up_object(&list)?;
+        if storage.nan_fill {
+            let nan = f64::NAN.to_le_bytes();
+            let status = h5p::H5Pset_fill_value(list.id, *h5t::H5T_IEEE_F64LE, nan.as_ptr().cast::<c_void>());
+            done(status, "H5Pset_fill_value", path)?;
+        }
+        if let Some(chunk) = &storage.chunk {
+            let lengths: Vec<u64> = chunk.iter().map(|length| *length as u64).collect();
+            done(h5p::H5Pset_chunk(list.id, rank(chunk), lengths.as_ptr()), "H5Pset_chunk", path)?;
+            done(h5p::H5Pset_shuffle(list.id), "H5Pset_shuffle", path)?;
+            done(h5p::H5Pset_deflate(list.id, 4), "H5Pset_deflate", path)?;
+            done(h5p::H5Pset_fletcher32(list.id), "H5Pset_fletcher32", path)?;
+        }
+        Ok(list)
+    }
+}
+
+/// Values with their type, as the library takes them.
+struct Element {
+    kind: Handle,
+    bytes: Vec<u8>,
+}
+
+impl Element {
+    fn of(data: &Data, path: &str) -> Result<Self, WriteError> {
+        if let Data::Text(texts) = data {
+            return Self::texts(texts, path);
+        }
+        let id = match data {
+            Data::U8(_) => *h5t::H5T_STD_U8LE,
+            Data::U16(_) => *h5t::H5T_STD_U16LE,
+            Data::U32(_) => *h5t::H5T_STD_U32LE,
+            Data::U64(_) => *h5t::H5T_STD_U64LE,
+            Data::I8(_) => *h5t::H5T_STD_I8LE,
+            Data::I16(_) => *h5t::H5T_STD_I16LE,
+            Data::I32(_) => *h5t::H5T_STD_I32LE,
+            Data::I64(_) => *h5t::H5T_STD_I64LE,
+            Data::F32(_) => *h5t::H5T_IEEE_F32LE,
+            Data::F64(_) => *h5t::H5T_IEEE_F64LE,
+            Data::Text(_) | Data::Other(_) => return Err(refused("a type without values", path)),
+        };
+        let mut bytes = Vec::new();
+        data.for_each_byte_block(|block| bytes.extend_from_slice(block));
+        // SAFETY: a copy of an open type.
+        let kind = handle(unsafe { h5t::H5Tcopy(id) }, h5t::H5Tclose, "H5Tcopy", path)?;
+        Ok(Self { kind, bytes })
+    }
+
+    /// Fixed-length UTF-8, padded with NUL to the longest text; at least one byte, because HDF5 has no empty type.
+    fn texts(texts: &[String], path: &str) -> Result<Self, WriteError> {
+        let size = texts.iter().map(String::len).max().unwrap_or(0).max(1);
+        let mut bytes = vec![0_u8; size * texts.len()];
+        for (slot, text) in bytes.chunks_mut(size).zip(texts) {
+            slot[..text.len()].copy_from_slice(text.as_bytes());
+        }
+        // SAFETY: the type is a private copy, open while it is changed.
+        unsafe {
+            let kind = handle(h5t::H5Tcopy(*h5t::H5T_C_S1), h5t::H5Tclose, "H5Tcopy", path)?;
+            done(h5t::H5Tset_size(kind.id, size), "H5Tset_size", path)?;
+            done(h5t::H5Tset_strpad(kind.id, h5t::H5T_str_t::H5T_STR_NULLPAD), "H5Tset_strpad", path)?;
+            done(h5t::H5Tset_cset(kind.id, h5t::H5T_cset_t::H5T_CSET_UTF8), "H5Tset_cset", path)?;
+            Ok(Self { kind, bytes })
+        }
+    }
+}

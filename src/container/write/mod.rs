@@ -1,0 +1,85 @@
+//! A tree as the bytes of an HDF5 file, through libhdf5.
+//!
+//! The file is built in memory and reaches the disk through [`replace`](super::replace) like every other output: a full
+//! disk is then an ordinary error, and the same tree gives the same bytes wherever they go.
+
+mod library;
+
+use std::collections::BTreeMap;
+
+use super::error::WriteError;
+use super::layout::name;
+use super::tree::{Array, Attributes, Data, Dataset, Group};
+use library::{Handle, Storage, exclusively, memory_file};
+
+/// Bytes of a chunk before compression, about.
+const CHUNK_BYTES: usize = 1 << 20;
+
+/// The bytes of the file that holds a tree.
+///
+/// # Errors
+/// [`WriteError::Library`] when libhdf5 refuses something.
+pub fn to_bytes(root: &Group) -> Result<Vec<u8>, WriteError> {
+    exclusively(|| {
+        let file = memory_file()?;
+        write_group(&file, root)?;
+        file.image()
+    })
+}
+
+fn write_group(target: &Handle, group: &Group) -> Result<(), WriteError> {
+    write_attributes(target, &group.attributes)?;
+    // Ordered, because the library writes an object when it is closed: any order, but the same every time.
+    let mut datasets = BTreeMap::new();
+    for (name, dataset) in &group.datasets {
+        datasets.insert(name.as_str(), write_dataset(target, group, name, dataset)?);
+    }
+    for (name, dataset) in &group.datasets {
+        for (axis, scale) in (0_u32..).zip(&dataset.axes) {
+            if let (Some(target), Some(scale)) = (datasets.get(name.as_str()), datasets.get(scale.as_str())) {
+                target.attach_scale(axis, scale)?;
+            }
+        }
+    }
+    drop(datasets);
+    for (name, child) in &group.groups {
+        write_group(&target.create_group(name)?, child)?;
+    }
+    Ok(())
+}
+
+fn write_dataset(target: &Handle, group: &Group, name: &str, dataset: &Dataset) -> Result<Handle, WriteError> {
+    let nan_fill = matches!(dataset.array.data, Data::F64(_)) && !dataset.is_scale && !is_coordinate(group, name);
+    let storage = Storage { chunk: chunk(&dataset.array), nan_fill };
+    let written = target.create_dataset(name, &dataset.array, &storage)?;
+    if dataset.is_scale {
+        written.make_scale(name)?;
+    }
+    if nan_fill {
+        written.write_attribute("_FillValue", &Array::scalar(Data::F64(vec![f64::NAN])))?;
+    }
+    write_attributes(&written, &dataset.attributes)?;
+    Ok(written)
+}
+
+fn write_attributes(target: &Handle, attributes: &Attributes) -> Result<(), WriteError> {
+    attributes.iter().try_for_each(|(name, array)| target.write_attribute(name, array))
+}
+
+/// True where another dataset of the group names this one among its coordinates; CF forbids fill values there.
+fn is_coordinate(group: &Group, name: &str) -> bool {
+    let lists = group.datasets.iter().filter_map(|(_, dataset)| dataset.attributes.get(name::COORDINATES));
+    lists.filter_map(Array::as_text).any(|list| list.split(' ').any(|member| member == name))
+}
+
+/// Whole rows, so that a geometry is one piece; an array without values cannot be cut into chunks.
+fn chunk(array: &Array) -> Option<Vec<usize>> {
+    if array.shape.is_empty() || array.data.is_empty() {
+        return None;
+    }
+    let row: usize = array.shape.iter().skip(1).product();
+    let rows = (CHUNK_BYTES / 8 / row.max(1)).clamp(1, array.shape[0]);
+    let mut chunk = array.shape.clone();
+    chunk[0] = rows;
+    Some(chunk)
+}

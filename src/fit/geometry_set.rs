@@ -1,0 +1,207 @@
+//! What depends on the geometries alone, built once and used by every fit over them.
+
+use ndarray::Array2;
+
+use crate::quantity::{Geometry, HalfAngles, Reference};
+use crate::terms::{Denominator, Distribution, Undefined, diffuse_factor, fresnel, specular_factor};
+
+/// Roughness nodes of the starting grid.
+const ROUGHNESS_NODES: usize = 12;
+/// Nodes of n - 1 in the starting grid.
+pub(super) const INDEX_NODES: [f64; 3] = [0.15, 0.424_264_068_711_928_5, 1.2];
+/// A lobe narrower than the smallest half-vector angle over this is seen by no other point of the grid.
+const NARROWEST_NODE: f64 = 4.4;
+/// The box of n - 1.
+pub(super) const INDEX_BOX: (f64, f64) = (1e-3, 5.0);
+/// The box of the roughness, as a half width at half height in rad.
+const HALF_WIDTH_BOX: (f64, f64) = (2e-3, 3.0);
+/// Angles closer than this are one: the difference changes D by less than its rounding.
+const SAME_ANGLE: f64 = 4e-15;
+
+/// Why geometries cannot be fitted over.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum SetError {
+    /// No geometry has a value of every term.
+    #[error("none of the {0} geometries has a value of every term")]
+    NothingDefined(usize),
+    /// The reference convention refuses.
+    #[error(transparent)]
+    Reference(#[from] crate::quantity::ConversionRefused),
+}
+
+/// Points with the same half-vector angle, a run of the sorted points.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Segment {
+    pub(super) start: usize,
+    pub(super) end: usize,
+    pub(super) half: HalfAngles,
+}
+
+/// Geometries under one reference convention, distribution and denominator, with the tables of the starting grid.
+#[derive(Debug, Clone)]
+pub struct GeometrySet {
+    pub(super) distribution: Distribution,
+    /// Input index of each sorted point.
+    pub(super) order: Vec<usize>,
+    /// Input indices of geometries where a term is undefined; they take no part.
+    undefined: Vec<usize>,
+    inputs: usize,
+    /// Angular factor of a diffuse term of amplitude 1, per sorted point.
+    pub(super) diffuse: Vec<f64>,
+    /// G over denominator and reference, per sorted point.
+    pub(super) masked: Vec<f64>,
+    pub(super) segments: Vec<Segment>,
+    /// Distinct angles between L and Q, and which one each sorted point has.
+    pub(super) halves: Vec<HalfAngles>,
+    pub(super) half_of: Vec<u32>,
+    pub(super) grid: Grid,
+    pub(super) roughness_box: (f64, f64),
+    /// Smallest half-vector angle that is not 0, rad; infinite where there is none.
+    pub(super) smallest_angle: f64,
+}
+
+/// Tables of the starting grid.
+#[derive(Debug, Clone)]
+pub(super) struct Grid {
+    pub(super) roughness: Vec<f64>,
+    /// D \[roughness node, segment\].
+    pub(super) distribution: Array2<f64>,
+    /// F G over denominator and reference \[index node, sorted point\].
+    pub(super) specular: Array2<f64>,
+}
+
+struct Point {
+    input: usize,
+    half: HalfAngles,
+    diffuse: f64,
+    masked: f64,
+}
+
+impl GeometrySet {
+    /// Tables for N geometries.
+    ///
+    /// A geometry where a term has no value (grazing against a reference in the same geometry, L = -V) takes no part
+    /// and is listed by [`GeometrySet::undefined`].
+    ///
+    /// # Errors
+    /// [`SetError`] when the reference is unstated, or no geometry is left.
+    pub fn new(
+        geometry: &[Geometry],
+        reference: &Reference,
+        distribution: Distribution,
+        denominator: Denominator,
+    ) -> Result<Self, SetError> {
+        let mut points = Vec::with_capacity(geometry.len());
+        let mut undefined = Vec::new();
+        for (input, geometry) in geometry.iter().enumerate() {
+            let half = geometry.half_angles();
+            let factors = diffuse_factor(geometry, reference)
+                .and_then(|diffuse| Ok((diffuse, specular_factor(denominator, geometry, &half, reference)?)));
+            match factors {
+                Ok((diffuse, masked)) => points.push(Point { input, half, diffuse, masked }),
+                Err(Undefined::Reference(refused)) => return Err(refused.into()),
+                Err(_) => undefined.push(input),
+            }
+        }
+        if points.is_empty() {
+            return Err(SetError::NothingDefined(geometry.len()));
+        }
+        points.sort_by(|a, b| a.half.phi.total_cmp(&b.half.phi));
+        Ok(Self::from_points(&points, undefined, distribution))
+    }
+
+    fn from_points(points: &[Point], undefined: Vec<usize>, distribution: Distribution) -> Self {
+        let segments = segments(points);
+        let (halves, half_of) = distinct_halves(points);
+        let masked: Vec<f64> = points.iter().map(|point| point.masked).collect();
+        let smallest_angle =
+            segments.iter().map(|segment| segment.half.phi).find(|&phi| phi > SAME_ANGLE).unwrap_or(f64::INFINITY);
+        let width = |half_width: f64| distribution.roughness_from_half_width(half_width);
+        let grid = Grid::new(distribution, smallest_angle, &segments, &halves, &half_of, &masked);
+        Self {
+            distribution,
+            order: points.iter().map(|point| point.input).collect(),
+            inputs: points.len() + undefined.len(),
+            undefined,
+            diffuse: points.iter().map(|point| point.diffuse).collect(),
+            masked,
+            segments,
+            halves,
+            half_of,
+            grid,
+            roughness_box: (width(HALF_WIDTH_BOX.0), width(HALF_WIDTH_BOX.1)),
+            smallest_angle,
+        }
+    }
+
+    /// How many geometries were given.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.inputs
+    }
+
+    /// True when no geometry was given.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.inputs == 0
+    }
+
+    /// Indices of the geometries where a term is undefined.
+    #[must_use]
+    pub fn undefined(&self) -> &[usize] {
+        &self.undefined
+    }
+}
+
+impl Grid {
+    fn new(
+        distribution: Distribution,
+        smallest_angle: f64,
+        segments: &[Segment],
+        halves: &[HalfAngles],
+        half_of: &[u32],
+        masked: &[f64],
+    ) -> Self {
+        let narrowest = (smallest_angle / NARROWEST_NODE).clamp(HALF_WIDTH_BOX.0, 0.5);
+        let ratio = (1.0 / narrowest).ln() / (ROUGHNESS_NODES - 1) as f64;
+        let roughness: Vec<f64> = (0..ROUGHNESS_NODES)
+            .map(|node| distribution.roughness_from_half_width(narrowest * (ratio * node as f64).exp()))
+            .collect();
+        let table = Array2::from_shape_fn((ROUGHNESS_NODES, segments.len()), |(node, k)| {
+            distribution.evaluate(&segments[k].half, roughness[node]).value
+        });
+        let fresnel_table = INDEX_NODES.map(|m| halves.iter().map(|half| fresnel(half, m).value).collect::<Vec<f64>>());
+        let specular = Array2::from_shape_fn((INDEX_NODES.len(), masked.len()), |(node, point)| {
+            fresnel_table[node][half_of[point] as usize] * masked[point]
+        });
+        Self { roughness, distribution: table, specular }
+    }
+}
+
+/// Runs of equal half-vector angle in points sorted by it.
+fn segments(points: &[Point]) -> Vec<Segment> {
+    let mut segments: Vec<Segment> = Vec::new();
+    for (index, point) in points.iter().enumerate() {
+        match segments.last_mut() {
+            Some(last) if point.half.phi - last.half.phi <= SAME_ANGLE => last.end = index + 1,
+            _ => segments.push(Segment { start: index, end: index + 1, half: point.half }),
+        }
+    }
+    segments
+}
+
+/// Distinct angles between L and Q, and the index of each point's.
+fn distinct_halves(points: &[Point]) -> (Vec<HalfAngles>, Vec<u32>) {
+    let mut by_angle: Vec<usize> = (0..points.len()).collect();
+    by_angle.sort_by(|&a, &b| points[a].half.cos_q.total_cmp(&points[b].half.cos_q));
+    let mut halves: Vec<HalfAngles> = Vec::new();
+    let mut half_of = vec![0_u32; points.len()];
+    for index in by_angle {
+        let half = points[index].half;
+        if halves.last().is_none_or(|last| half.cos_q - last.cos_q > SAME_ANGLE) {
+            halves.push(half);
+        }
+        half_of[index] = (halves.len() - 1) as u32;
+    }
+    (halves, half_of)
+}

@@ -1,0 +1,235 @@
+//! From a measurement of a document to a fitted model.
+
+use ndarray::Array2;
+
+use super::geometry_set::{GeometrySet, SetError};
+use super::identifiability::findings;
+use super::outcome::Fit;
+use super::separability::separability;
+use super::solve::{DataError, Fitter, Terms};
+use crate::dataset::{
+    Document, FittedParameter, FittedTerm, Id, Measurement, Model, ReduceError, Reduced, Reduction, Residuals,
+    TermsError, reduce, residuals,
+};
+use crate::quantity::{Part, Reference};
+use crate::terms::{Denominator, Distribution, Parameter, TermKind};
+
+/// What to fit and how.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FitOptions {
+    /// The terms; empty for what the measurement's part calls for: `luminescent` for a luminescent factor,
+    /// `lambertian` and `torrance-sparrow` for all else.
+    pub terms: Vec<TermKind>,
+    /// Form of D.
+    pub distribution: Distribution,
+    /// Denominator of the specular term.
+    pub denominator: Denominator,
+    /// How a spectrum becomes the fitted number.
+    pub reduction: Reduction,
+    /// A reference convention to use where the measurement does not state one; recorded as an assumption.
+    pub assume_reference: Option<Reference>,
+    /// Digest of the measurement, stored with the model.
+    pub data_digest: String,
+}
+
+impl Default for FitOptions {
+    fn default() -> Self {
+        Self {
+            terms: Vec::new(),
+            distribution: Distribution::GaussianHalfHeight,
+            denominator: Denominator::CosThetaI,
+            reduction: Reduction::Auto,
+            assume_reference: None,
+            data_digest: String::new(),
+        }
+    }
+}
+
+/// Why a measurement cannot be fitted.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum FitError {
+    /// The measurement cannot be reduced to numbers.
+    #[error(transparent)]
+    Reduce(#[from] ReduceError),
+    /// The geometries cannot be fitted over.
+    #[error("measurement `{measurement}`: {source}")]
+    Geometry {
+        /// Which measurement.
+        measurement: String,
+        /// Why.
+        source: SetError,
+    },
+    /// The numbers cannot be fitted.
+    #[error("measurement `{measurement}`: {source}")]
+    Data {
+        /// Which measurement.
+        measurement: String,
+        /// Why.
+        source: DataError,
+    },
+    /// Two diffuse terms at once.
+    #[error(
+        "`lambertian` and `luminescent` have one angular form under one light and cannot be told apart by a scan; fit one"
+    )]
+    TwoDiffuseTerms,
+    /// The same term twice, or a term of the result without a parameter.
+    #[error(transparent)]
+    Terms(#[from] TermsError),
+}
+
+/// The terms of a fit: at most one diffuse, at most one specular.
+#[derive(Debug, Clone, Copy)]
+struct Choice {
+    diffuse: Option<TermKind>,
+    specular: bool,
+}
+
+impl Choice {
+    fn new(terms: &[TermKind], part: Part) -> Result<Self, FitError> {
+        let default: &[TermKind] = match part {
+            Part::Luminescent => &[TermKind::Luminescent],
+            _ => &[TermKind::Lambertian, TermKind::TorranceSparrow],
+        };
+        let terms = if terms.is_empty() { default } else { terms };
+        let has = |kind| terms.contains(&kind);
+        let diffuse = match (has(TermKind::Lambertian), has(TermKind::Luminescent)) {
+            (true, true) => return Err(FitError::TwoDiffuseTerms),
+            (true, false) => Some(TermKind::Lambertian),
+            (false, true) => Some(TermKind::Luminescent),
+            (false, false) => None,
+        };
+        Ok(Self { diffuse, specular: has(TermKind::TorranceSparrow) })
+    }
+}
+
+/// Fits the terms to a measurement of a document, without a starting point.
+///
+/// # Errors
+/// [`FitError`] when the measurement cannot be reduced, its reference is unstated, or too few values are usable. That
+/// the data cannot tell a parameter is not an error but a finding of the model.
+pub fn fit_measurement(
+    document: &Document,
+    measurement: &Measurement,
+    options: &FitOptions,
+) -> Result<Model, FitError> {
+    let name = || measurement.id.to_string();
+    let choice = Choice::new(&options.terms, measurement.quantity.part)?;
+    let data = reduce(document, measurement, options.reduction)?;
+    let (reference, assumed) = match (data.reference, options.assume_reference) {
+        (Reference::Unstated, Some(assumed)) => (assumed, true),
+        (stated, _) => (stated, false),
+    };
+    let set = GeometrySet::new(&data.geometry, &reference, options.distribution, options.denominator)
+        .map_err(|source| FitError::Geometry { measurement: name(), source })?;
+    let terms = Terms { diffuse: choice.diffuse.is_some(), specular: choice.specular };
+    let fit = Fitter::new(&set, terms)
+        .fit_bands(data.values.view(), data.sigma.as_ref().map(|sigma| sigma.view()))
+        .map_err(|source| FitError::Data { measurement: name(), source })?;
+    let mut identifiability = data.notes.clone();
+    if assumed {
+        identifiability
+            .push(format!("the measurement does not state its reference; `{reference}` was assumed on request"));
+    }
+    if !set.undefined().is_empty() {
+        identifiability.push(format!(
+            "{} geometries at grazing incidence take no part: a term has no value there",
+            set.undefined().len()
+        ));
+    }
+    identifiability.extend(findings(&fit, &set, choice.specular, data.sigma.is_some()));
+    let (covariance_parameters, covariance) = stored_covariance(&fit, choice);
+    let mut model = Model {
+        id: Id::from_title(&format!("{}-{}", measurement.id, data.reduction)),
+        title: None,
+        measurement: measurement.id.clone(),
+        data_digest: options.data_digest.clone(),
+        reduction: data.reduction.clone(),
+        reference,
+        unit: data.kind.unit().to_owned(),
+        emission: data.emission.clone(),
+        terms: fitted_terms(&fit, &data, choice, options),
+        covariance_parameters,
+        covariance,
+        residuals: Residuals { rms: f64::NAN, reduced_chi_square: f64::NAN, count: 0, left_out: 0 },
+        converged: fit.stop.is_converged(),
+        method: method(&fit),
+        identifiability,
+        separability: separability(&data, &reference),
+    };
+    let parameters = data.values.len() - fit.left_out - fit.degrees_of_freedom as usize;
+    model.residuals = residuals(&model, &data, parameters)?.1;
+    Ok(model)
+}
+
+fn method(fit: &Fit) -> String {
+    format!(
+        "least squares, weighted with 1/sigma^2 where sigma is known; amplitudes non-negative by variable projection; \
+         roughness and index from a 12 x 3 grid, two starts polished by Levenberg-Marquardt; {} after {} evaluations",
+        fit.stop.text(),
+        fit.evaluations
+    )
+}
+
+fn fitted_terms(fit: &Fit, data: &Reduced, choice: Choice, options: &FitOptions) -> Vec<FittedTerm> {
+    let unit = data.kind.unit();
+    let sigma = |k: usize| (0..fit.bands.len()).map(|band| fit.standard_uncertainty(band)[k]).collect::<Vec<f64>>();
+    let amplitude = |parameter: &Parameter, k: usize| FittedParameter {
+        name: parameter.name.to_owned(),
+        unit: unit.to_owned(),
+        value: fit.bands.iter().map(|band| if k == 0 { band.diffuse } else { band.intensity }).collect(),
+        standard_uncertainty: sigma(k),
+        shared_relative_uncertainty: shared(data),
+    };
+    let common = |parameter: &Parameter, value: f64, k: usize| FittedParameter {
+        name: parameter.name.to_owned(),
+        unit: parameter.unit(Some(options.distribution)).to_owned(),
+        value: vec![value],
+        standard_uncertainty: vec![fit.standard_uncertainty(0)[k]],
+        shared_relative_uncertainty: Vec::new(),
+    };
+    let mut terms = Vec::new();
+    if let Some(kind) = choice.diffuse {
+        let parameters = vec![amplitude(&kind.parameters()[0], 0)];
+        terms.push(FittedTerm { kind, distribution: None, denominator: None, parameters });
+    }
+    if fit.has_specular() {
+        let names = TermKind::TorranceSparrow.parameters();
+        terms.push(FittedTerm {
+            kind: TermKind::TorranceSparrow,
+            distribution: Some(options.distribution),
+            denominator: Some(options.denominator),
+            parameters: vec![
+                amplitude(&names[0], 1),
+                common(&names[1], fit.roughness, 2),
+                common(&names[2], fit.refractive_index(), 3),
+            ],
+        });
+    }
+    terms
+}
+
+/// What all rows share scales every amplitude alike; nothing is stored where there is none.
+fn shared(data: &Reduced) -> Vec<f64> {
+    if data.shared_relative.iter().all(|relative| *relative == 0.0) { Vec::new() } else { data.shared_relative.clone() }
+}
+
+/// The covariance that is stored: of all parameters where there is one emission value, of the common ones otherwise.
+fn stored_covariance(fit: &Fit, choice: Choice) -> (Vec<String>, Array2<f64>) {
+    let name = |kind: TermKind, k: usize| format!("{}.{}", kind.name(), kind.parameters()[k].name);
+    let mut entries: Vec<(String, usize)> = Vec::new();
+    let single = fit.bands.len() == 1;
+    if let (Some(kind), true) = (choice.diffuse, single) {
+        entries.push((name(kind, 0), 0));
+    }
+    if fit.has_specular() {
+        if single {
+            entries.push((name(TermKind::TorranceSparrow, 0), 1));
+        }
+        entries.extend([1, 2].map(|k| (name(TermKind::TorranceSparrow, k), k + 1)));
+    }
+    let covariance = Array2::from_shape_fn((entries.len(), entries.len()), |(i, j)| {
+        fit.bands[0].covariance[entries[i].1][entries[j].1]
+    });
+    (entries.into_iter().map(|entry| entry.0).collect(), covariance)
+}

@@ -1,0 +1,29 @@
+//! Least squares over `terms`: start-free, with covariance and with words for what the data cannot tell.
+//!
+//! *May use:* `dataset`, `terms`, `quantity`.
+//!
+//! *Invariant:* a fit that reports success is at the global minimum over its box as far as a deterministic grid and
+//! two polished starts can tell; what the data do not determine has no number but a sentence.
+//!
+//! How it works. The model is linear in its amplitudes and non-linear in roughness r and index n alone. So the
+//! amplitudes are solved for, non-negatively, inside every evaluation (variable projection), and a two-parameter
+//! problem is left, in ln r and ln(n-1). A coarse grid over it ([`GeometrySet`] keeps its tables) gives the starts;
+//! Levenberg-Marquardt polishes the two best that differ in roughness. Everything that depends on the geometries alone is
+//! in the set, sorted by half-vector angle, so that an evaluation needs one D per distinct angle and one F per distinct
+//! half angle.
+
+mod curvature;
+mod geometry_set;
+mod identifiability;
+mod linear;
+mod measurement;
+mod outcome;
+mod separability;
+mod solve;
+mod statistics;
+
+pub use geometry_set::{GeometrySet, SetError};
+pub use measurement::{FitError, FitOptions, fit_measurement};
+pub use outcome::{BandFit, Fit, Stop};
+pub use separability::separability;
+pub use solve::{DataError, Fitter, Terms};

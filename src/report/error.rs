@@ -1,0 +1,105 @@
+//! Why a figure cannot be drawn.
+
+use crate::dataset::{ReduceError, TermsError, UnknownReduction};
+
+/// Why a figure cannot be drawn.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ReportError {
+    /// There is no finite number to draw.
+    #[error("{figure}: there is no finite value to draw")]
+    Empty {
+        /// Which figure.
+        figure: String,
+    },
+    /// Lists that belong together have different lengths.
+    #[error("{figure}: `{what}` has {found} entries; expected {expected}")]
+    Lengths {
+        /// Which figure.
+        figure: String,
+        /// Which list.
+        what: &'static str,
+        /// Its length.
+        found: usize,
+        /// The length it should have.
+        expected: usize,
+    },
+    /// A map over signed angles needs directions in the plane of incidence.
+    #[error(
+        "{figure}: {outside} of {total} geometries leave the plane of azimuth 0 and 180 degrees; a map over signed angles \
+         needs them in it"
+    )]
+    NotInPlane {
+        /// Which figure.
+        figure: String,
+        /// How many leave the plane.
+        outside: usize,
+        /// How many there are.
+        total: usize,
+    },
+    /// The angles do not form a table that could be drawn cell by cell.
+    #[error("{figure}: {incidences} x {viewings} different angles are too many cells for a map (at most {limit})")]
+    TooManyCells {
+        /// Which figure.
+        figure: String,
+        /// Different angles of incidence.
+        incidences: usize,
+        /// Different angles of viewing.
+        viewings: usize,
+        /// How many cells are drawn at most.
+        limit: usize,
+    },
+    /// The measurement that a model was fitted to is not in the document.
+    #[error("model `{model}`: its measurement `{measurement}` is not in the document")]
+    NoMeasurement {
+        /// Which model.
+        model: String,
+        /// The id it gives.
+        measurement: String,
+    },
+    /// The model does not say how a spectrum became the fitted number.
+    #[error("model `{model}`: its reduction cannot be done again")]
+    Reduction {
+        /// Which model.
+        model: String,
+        /// Why.
+        source: UnknownReduction,
+    },
+    /// The fitted numbers cannot be formed again.
+    #[error("model `{model}`: its data cannot be formed again")]
+    Reduce {
+        /// Which model.
+        model: String,
+        /// Why.
+        source: ReduceError,
+    },
+    /// The model cannot be evaluated.
+    #[error("model `{model}`: it cannot be evaluated")]
+    Terms {
+        /// Which model.
+        model: String,
+        /// Why.
+        source: TermsError,
+    },
+    /// The picture could not be encoded.
+    #[error("{figure}: the PNG cannot be written: {reason}")]
+    Png {
+        /// Which figure.
+        figure: String,
+        /// What the encoder says.
+        reason: String,
+    },
+}
+
+impl ReportError {
+    /// The message with the messages of its causes, on one line.
+    pub(super) fn in_full(&self) -> String {
+        let mut text = self.to_string();
+        let mut cause = std::error::Error::source(self);
+        while let Some(error) = cause {
+            text.push_str(&format!(": {error}"));
+            cause = error.source();
+        }
+        text
+    }
+}

@@ -1,0 +1,188 @@
+//! Scales: where on an axis a number stands, and which numbers an axis names.
+
+/// A scale between two different finite numbers.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Scale {
+    /// Equal distances are equal differences.
+    Linear { from: f64, to: f64 },
+    /// Equal distances are equal ratios; both ends are positive.
+    Logarithmic { from: f64, to: f64 },
+}
+
+/// A named number on an axis.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Tick {
+    pub(super) value: f64,
+    pub(super) label: String,
+}
+
+impl Scale {
+    /// A linear scale over the finite ones of these numbers; a single number gets room on both sides.
+    pub(super) fn linear_over(values: impl IntoIterator<Item = f64>) -> Option<Self> {
+        let (from, to) = extent(values)?;
+        let room = if to > from { 0.0 } else { from.abs().max(1.0) / 2.0 };
+        Some(Self::Linear { from: from - room, to: to + room })
+    }
+
+    /// The same scale with a share of its length added on both sides.
+    pub(super) fn widened(self, share: f64) -> Self {
+        match self {
+            Self::Linear { from, to } => {
+                let room = (to - from) * share;
+                Self::Linear { from: from - room, to: to + room }
+            }
+            Self::Logarithmic { from, to } => {
+                let factor = (to / from).powf(share);
+                Self::Logarithmic { from: from / factor, to: to * factor }
+            }
+        }
+    }
+
+    /// The same linear scale, reaching down or up to a number.
+    pub(super) fn including(self, value: f64) -> Self {
+        match self {
+            Self::Linear { from, to } => Self::Linear { from: from.min(value), to: to.max(value) },
+            Self::Logarithmic { .. } => self,
+        }
+    }
+
+    /// The scale for colours: logarithmic where all numbers are positive and the largest is more than four times the
+    /// ninth decile, so that a mirror peak does not hide everything else; otherwise linear.
+    pub(super) fn for_colours(values: &[f64]) -> Option<Self> {
+        let mut sorted: Vec<f64> = values.iter().copied().filter(|value| value.is_finite()).collect();
+        sorted.sort_by(f64::total_cmp);
+        let (first, last) = (*sorted.first()?, *sorted.last()?);
+        let ninth_decile = sorted[(sorted.len() - 1) * 9 / 10];
+        if first > 0.0 && last > 4.0 * ninth_decile {
+            return Some(Self::Logarithmic { from: first, to: last });
+        }
+        Self::linear_over(sorted)
+    }
+
+    /// Where a number stands: 0 at `from`, 1 at `to`.
+    pub(super) fn position(&self, value: f64) -> f64 {
+        match *self {
+            Self::Linear { from, to } => (value - from) / (to - from),
+            Self::Logarithmic { from, to } => (value / from).ln() / (to / from).ln(),
+        }
+    }
+
+    /// The number at a position.
+    pub(super) fn value(&self, position: f64) -> f64 {
+        match *self {
+            Self::Linear { from, to } => from + position * (to - from),
+            Self::Logarithmic { from, to } => from * (to / from).powf(position),
+        }
+    }
+
+    pub(super) fn is_logarithmic(&self) -> bool {
+        matches!(self, Self::Logarithmic { .. })
+    }
+
+    /// About `count` named numbers.
+    pub(super) fn ticks(&self, count: usize) -> Vec<Tick> {
+        match *self {
+            Self::Linear { from, to } => linear_ticks(from, to, count),
+            Self::Logarithmic { from, to } => logarithmic_ticks(from, to),
+        }
+    }
+}
+
+/// Smallest and largest of the finite numbers.
+pub(super) fn extent(values: impl IntoIterator<Item = f64>) -> Option<(f64, f64)> {
+    values.into_iter().filter(|value| value.is_finite()).fold(None, |extent, value| {
+        let (low, high) = extent.unwrap_or((value, value));
+        Some((value.min(low), value.max(high)))
+    })
+}
+
+fn linear_ticks(from: f64, to: f64, count: usize) -> Vec<Tick> {
+    let step = nice_step((to - from) / count.max(1) as f64);
+    let first = (from / step - 1e-9).ceil();
+    let last = (to / step + 1e-9).floor();
+    let steps = (last - first).clamp(0.0, 1000.0) as usize;
+    (0..=steps)
+        .map(|index| (first + index as f64) * step)
+        .map(|value| Tick { value, label: number_at_step(value, step) })
+        .collect()
+}
+
+/// 1, 2 or 5 times a power of ten, not less than `least`.
+fn nice_step(least: f64) -> f64 {
+    let power = 10f64.powf(least.log10().floor());
+    let factor = [1.0, 2.0, 5.0].into_iter().find(|factor| factor * power >= least * (1.0 - 1e-9)).unwrap_or(10.0);
+    factor * power
+}
+
+fn logarithmic_ticks(from: f64, to: f64) -> Vec<Tick> {
+    let decades = (to / from).log10();
+    let factors: &[f64] = if decades > 3.0 { &[1.0] } else { &[1.0, 2.0, 5.0] };
+    let (first, last) = (from.log10().floor() as i32, to.log10().ceil() as i32);
+    (first..=last)
+        .flat_map(|decade| factors.iter().map(move |factor| factor * 10f64.powi(decade)))
+        .filter(|value| (from * (1.0 - 1e-9)..=to * (1.0 + 1e-9)).contains(value))
+        .map(|value| Tick { value, label: number_at_step(value, value) })
+        .collect()
+}
+
+/// A number with the decimals that a step needs; with a power of ten where it is very large or very small.
+fn number_at_step(value: f64, step: f64) -> String {
+    if value == 0.0 {
+        return "0".to_owned();
+    }
+    if !(1e-4..1e6).contains(&step.abs()) || value.abs() >= 1e6 {
+        let digits = (value.abs() / step).log10().ceil().clamp(0.0, 6.0) as usize;
+        return power_of_ten(&format!("{value:.digits$e}"));
+    }
+    let decimals = (-step.log10() + 1e-9).floor().max(-1.0) as i32 + i32::from(step < 1.0 && !is_power(step));
+    let text = format!("{value:.*}", decimals.max(0) as usize);
+    text.replacen('-', "\u{2212}", 1)
+}
+
+fn is_power(step: f64) -> bool {
+    let exponent = step.log10();
+    (exponent - exponent.round()).abs() < 1e-9
+}
+
+/// `1.5e-7` as 1.5·10⁻⁷.
+pub(super) fn power_of_ten(text: &str) -> String {
+    let Some((mantissa, exponent)) = text.split_once('e') else { return text.to_owned() };
+    format!("{}\u{b7}10{}", mantissa.replacen('-', "\u{2212}", 1), superscript(exponent))
+}
+
+/// Digits and minus raised.
+pub(super) fn superscript(text: &str) -> String {
+    const RAISED: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
+    text.chars()
+        .map(|c| match c {
+            '-' => '⁻',
+            digit => digit.to_digit(10).map_or(digit, |digit| RAISED[digit as usize]),
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn labels(scale: Scale) -> Vec<String> {
+        scale.ticks(5).into_iter().map(|tick| tick.label).collect()
+    }
+
+    #[test]
+    fn ticks_are_round_numbers_with_the_decimals_they_need() {
+        assert_eq!(labels(Scale::Linear { from: 0.0, to: 1.0 }), ["0", "0.2", "0.4", "0.6", "0.8", "1.0"]);
+        assert_eq!(labels(Scale::Linear { from: -80.0, to: 80.0 }), ["\u{2212}50", "0", "50"]);
+        assert_eq!(labels(Scale::Linear { from: 0.95, to: 1.05 }), ["0.96", "0.98", "1.00", "1.02", "1.04"]);
+        assert_eq!(labels(Scale::Linear { from: 0.0, to: 5e-7 })[1], "1·10⁻⁷");
+        assert_eq!(labels(Scale::Logarithmic { from: 0.15, to: 6.0 }), ["0.2", "0.5", "1", "2", "5"]);
+    }
+
+    #[test]
+    fn one_value_or_none_is_no_trouble() {
+        assert_eq!(Scale::linear_over([f64::NAN]), None);
+        assert_eq!(Scale::for_colours(&[]), None);
+        let one = Scale::for_colours(&[0.0]).unwrap();
+        assert!(one.position(0.0).is_finite() && !one.ticks(5).is_empty());
+    }
+}

@@ -1,0 +1,134 @@
+//! A whole scan: every geometry, the white plate before and after, the dark, the manifest and the truth.
+
+mod instrument;
+mod objects;
+mod optics;
+mod random;
+mod truth;
+
+use std::path::Path;
+use std::{fs, io};
+
+use instrument::Reading;
+pub(crate) use objects::{OBJECTS, Object};
+use optics::{Spectra, WAVELENGTHS, WHITE_FACTOR};
+use random::Random;
+
+/// Readings of the white plate before, and again after the scan.
+const WHITES: usize = 3;
+/// The geometry of the white plate, signed angles in degrees.
+const WHITE_GEOMETRY: (i32, i32) = (0, 45);
+/// The one geometry at which the instrument says "noisy" (code 30).
+const NOISY_GEOMETRY: (i32, i32) = (-60, 40);
+/// What one record takes, s: the simulated clock, which starts with the century.
+const SECONDS_PER_RECORD: usize = 20;
+
+/// A record and where it stands in the manifest.
+#[derive(Debug)]
+struct Record {
+    file: String,
+    role: &'static str,
+    /// Signed angles, degrees; a dark record has none.
+    angles: Option<(i32, i32)>,
+    repeat: usize,
+    reading: Reading,
+}
+
+/// A simulated scan.
+#[derive(Debug)]
+pub(crate) struct Scan {
+    title: &'static str,
+    /// In the order of acquisition.
+    records: Vec<Record>,
+    truth: serde_json::Value,
+}
+
+impl Scan {
+    /// Simulates the scan of an object; its number chooses the noise.
+    pub(crate) fn simulate(number: usize, object: &Object) -> Self {
+        let spectra = Spectra::of(object);
+        let mut scan = Self { title: object.title, records: Vec::new(), truth: truth::truth(object, &spectra) };
+        let (white_i, _) = WHITE_GEOMETRY;
+        let white = spectra.white_radiance(f64::from(white_i));
+        let dark = vec![0.0; WAVELENGTHS];
+        scan.take(number, "dark_1", "dark", None, 1, &dark);
+        for repeat in 1..=WHITES {
+            scan.take(number, &format!("white_{repeat}"), "white", Some(WHITE_GEOMETRY), repeat, &white);
+        }
+        for (theta_i, theta_v) in geometries() {
+            let radiance = spectra.radiance(object, f64::from(theta_i), f64::from(theta_v));
+            scan.take(number, &format!("ti{theta_i}_tv{theta_v}"), "sample", Some((theta_i, theta_v)), 1, &radiance);
+        }
+        for repeat in WHITES + 1..=2 * WHITES {
+            scan.take(number, &format!("white_{repeat}"), "white", Some(WHITE_GEOMETRY), repeat, &white);
+        }
+        scan.take(number, "dark_2", "dark", None, 2, &dark);
+        scan
+    }
+
+    fn take(
+        &mut self,
+        number: usize,
+        name: &str,
+        role: &'static str,
+        angles: Option<(i32, i32)>,
+        repeat: usize,
+        radiance: &[f64],
+    ) {
+        let noisy = role == "sample" && angles == Some(NOISY_GEOMETRY);
+        let reading = Reading::take(radiance, noisy, &mut Random::of(number, self.records.len()));
+        self.records.push(Record { file: format!("raw/{name}.txt"), role, angles, repeat, reading });
+    }
+
+    /// Writes `scan.csv`, `truth.json` and the records below `raw/`.
+    ///
+    /// # Errors
+    /// What the file system says.
+    pub(crate) fn write(&self, folder: &Path) -> io::Result<()> {
+        fs::create_dir_all(folder.join("raw"))?;
+        for record in &self.records {
+            fs::write(folder.join(&record.file), record.reading.d5_text())?;
+        }
+        fs::write(folder.join("scan.csv"), self.manifest())?;
+        fs::write(folder.join("truth.json"), format!("{:#}\n", self.truth))
+    }
+
+    fn manifest(&self) -> String {
+        let mut text = format!(
+            "# title: Simulated scan: {title}\n\
+             # sample: {title}\n\
+             # simulated: true\n\
+             # angles: signed, mirror-at-equal\n\
+             # instrument: PR-650 (simulated)\n\
+             # light: 375 nm diode with a white diode (simulated)\n\
+             # part: total\n\
+             # reference: fixed-geometry({},{})\n\
+             # reference-light: same\n\
+             # certified-factor: {WHITE_FACTOR}\n\
+             # certified-relative-uncertainty: 0.005\n\
+             file,record,role,theta_i_deg,theta_v_deg,repeat,time,exposure_ms\n",
+            WHITE_GEOMETRY.0,
+            WHITE_GEOMETRY.1,
+            title = self.title,
+        );
+        for (order, record) in self.records.iter().enumerate() {
+            let angles = record.angles.map_or(",".to_owned(), |(i, v)| format!("{i},{v}"));
+            let (file, role, repeat) = (&record.file, record.role, record.repeat);
+            let (time, exposure) = (clock(order), record.reading.exposure_ms);
+            text.push_str(&format!("{file},1,{role},{angles},{repeat},{time},{exposure}\n"));
+        }
+        text
+    }
+}
+
+/// The 17 x 17 signed angles without the retro diagonal, the incidence slowest.
+fn geometries() -> impl Iterator<Item = (i32, i32)> {
+    let angles = || (-80..=80).step_by(10);
+    angles().flat_map(move |i| angles().filter(move |v| *v != -i).map(move |v| (i, v)))
+}
+
+/// The simulated clock, RFC 3339.
+fn clock(order: usize) -> String {
+    let seconds = order * SECONDS_PER_RECORD;
+    format!("2000-01-01T{:02}:{:02}:{:02}Z", 9 + seconds / 3600, seconds / 60 % 60, seconds % 60)
+}

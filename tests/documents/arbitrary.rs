@@ -1,0 +1,390 @@
+//! Arbitrary documents: whatever the types allow that `Document::check` finds consistent.
+
+use bbrf::dataset::*;
+use bbrf::quantity::*;
+use bbrf::terms::{Denominator, Distribution, TermKind};
+use ndarray::Array2;
+use proptest::collection::vec;
+use proptest::option::of;
+use proptest::prelude::*;
+use proptest::sample::select;
+
+/// Any bits, so any NaN with its payload; and the ordinary numbers more often.
+fn number() -> impl Strategy<Value = f64> {
+    prop_oneof![
+        4 => -1e3..1e3,
+        2 => any::<u64>().prop_map(f64::from_bits),
+        1 => select(vec![0.0, -0.0, f64::NAN, -f64::NAN, f64::INFINITY, f64::MIN_POSITIVE, 5e-324]),
+        1 => any::<u64>().prop_map(|bits| f64::from_bits(0x7ff0_0000_0000_0001 | bits)),
+    ]
+}
+
+fn numbers(most: usize) -> impl Strategy<Value = Vec<f64>> {
+    vec(number(), 0..=most)
+}
+
+fn text() -> impl Strategy<Value = String> {
+    let shapes = [
+        "",
+        " ",
+        "a",
+        "größer, kleiner",
+        "蛍光",
+        "e\u{301}",
+        "tab\tline\nend ",
+        "👩‍🔬",
+        "\u{feff}",
+        "\u{1}",
+        "{\"a\":1}",
+    ];
+    prop_oneof![
+        select(shapes.to_vec()).prop_map(str::to_owned),
+        vec(any::<char>().prop_filter("no NUL", |c| *c != '\0'), 0..12).prop_map(|chars| chars.into_iter().collect()),
+    ]
+}
+
+fn name() -> impl Strategy<Value = Id> {
+    "[A-Za-z0-9_][A-Za-z0-9_.-]{0,20}".prop_map(|text| Id::new(text).unwrap())
+}
+
+/// Up to three ids that differ.
+fn names() -> impl Strategy<Value = Vec<Id>> {
+    proptest::collection::btree_set(name(), 0..4).prop_map(|set| set.into_iter().rev().collect())
+}
+
+fn choice(of: &[Id]) -> BoxedStrategy<Option<Id>> {
+    if of.is_empty() { Just(None).boxed() } else { proptest::option::of(select(of.to_vec())).boxed() }
+}
+
+fn wavelengths() -> impl Strategy<Value = WavelengthAxis> {
+    let shapes =
+        vec![BandpassShape::Triangular, BandpassShape::Rectangular, BandpassShape::Gaussian, BandpassShape::Unstated];
+    let bandpass = prop_oneof![
+        Just(Bandpass::Unstated),
+        (numbers(5), select(shapes)).prop_map(|(fwhm_nm, shape)| Bandpass::Stated { fwhm_nm, shape }),
+    ];
+    (numbers(6), bandpass).prop_map(|(nm, bandpass)| WavelengthAxis { nm, bandpass })
+}
+
+fn emission() -> impl Strategy<Value = EmissionAxis> {
+    let band = (number(), number()).prop_map(|(from_nm, to_nm)| Band { from_nm, to_nm });
+    prop_oneof![
+        wavelengths().prop_map(EmissionAxis::Wavelengths),
+        of(band).prop_map(|band| EmissionAxis::Band { band }),
+    ]
+}
+
+fn reference() -> impl Strategy<Value = Reference> {
+    prop_oneof![
+        select(vec![Reference::SameGeometry, Reference::None, Reference::Unstated]),
+        (-90.0..=90.0, -90.0..=90.0)
+            .prop_map(|(theta_i_deg, theta_v_deg)| Reference::FixedGeometry { theta_i_deg, theta_v_deg }),
+    ]
+}
+
+fn quantity() -> impl Strategy<Value = Quantity> {
+    let light = prop_oneof![
+        Just(ReferenceLight::Same),
+        Just(ReferenceLight::Unstated),
+        name()
+            .prop_filter("names that mean something else", |id| !matches!(id.as_str(), "same" | "unstated"))
+            .prop_map(|id| ReferenceLight::Light(id.to_string())),
+    ];
+    (
+        select(QuantityKind::ALL),
+        select(Part::ALL),
+        select(NormalisedAt::ALL),
+        select(Basis::ALL),
+        reference(),
+        light,
+        numbers(6),
+    )
+        .prop_map(|(kind, part, normalised_at, basis, reference, reference_light, certified_factor)| Quantity {
+            kind,
+            part,
+            normalised_at,
+            basis,
+            reference,
+            reference_light,
+            certified_factor,
+        })
+}
+
+fn geometry() -> impl Strategy<Value = Geometry> {
+    (0.0..=180.0, 0.0..360.0, 0.0..=90.0, 0.0..360.0)
+        .prop_map(|(a, b, c, d)| Geometry::from_degrees(a, b, c, d).unwrap())
+}
+
+fn acquisition() -> impl Strategy<Value = Acquisition> {
+    (of(geometry()), of(any::<u32>()), any::<u32>(), any::<u32>(), of(text()), of(number()), of(any::<i32>())).prop_map(
+        |(geometry, excitation, order, repeats, time, exposure_ms, quality_code)| Acquisition {
+            geometry,
+            excitation,
+            order,
+            repeats,
+            time,
+            exposure_ms,
+            quality_code,
+        },
+    )
+}
+
+fn excitation(lights: &[Id]) -> impl Strategy<Value = Excitation> + use<> {
+    (choice(lights), of(number()), of(number()), of(text()), of(text())).prop_map(
+        |(light, wavelength_nm, fwhm_nm, filter, polarisation)| Excitation {
+            light,
+            wavelength_nm,
+            fwhm_nm,
+            filter,
+            polarisation,
+        },
+    )
+}
+
+fn component() -> impl Strategy<Value = Component> {
+    let over = select(vec![CorrelatedOver::Wavelengths, CorrelatedOver::Acquisitions, CorrelatedOver::All]);
+    (text(), numbers(6), over).prop_map(|(name, relative, correlated_over)| Component {
+        name,
+        relative,
+        correlated_over,
+    })
+}
+
+fn matrix(rows: usize, columns: usize) -> impl Strategy<Value = Array2<f64>> {
+    vec(number(), rows * columns).prop_map(move |values| Array2::from_shape_vec((rows, columns), values).unwrap())
+}
+
+#[derive(Debug, Clone)]
+struct Names {
+    samples: Vec<Id>,
+    instruments: Vec<Id>,
+    lights: Vec<Id>,
+    references: Vec<Id>,
+    measurements: Vec<Id>,
+    models: Vec<Id>,
+}
+
+fn derivation(measurements: &[Id]) -> impl Strategy<Value = Derivation> + use<> {
+    let rows = || vec(any::<i32>(), 0..5);
+    (select(measurements.to_vec()), rows(), select(measurements.to_vec()), rows(), rows(), choice(measurements))
+        .prop_map(|(numerator, numerator_row, reference, reference_group, row_reference, dark)| Derivation {
+            numerator,
+            numerator_row,
+            reference,
+            reference_group,
+            row_reference,
+            dark,
+        })
+}
+
+fn measurement(id: Id, names: &Names) -> impl Strategy<Value = Measurement> + use<> {
+    let head = (
+        of(text()),
+        quantity(),
+        select(Role::ALL),
+        choice(&names.samples),
+        choice(&names.instruments),
+        choice(&names.references),
+        vec(excitation(&names.lights), 0..4),
+        of(derivation(&names.measurements)),
+        vec(component(), 0..3),
+    );
+    let body = (vec(acquisition(), 0..6), emission()).prop_flat_map(|(rows, emission)| {
+        let shape = (rows.len(), emission.len());
+        let flags =
+            vec(any::<u16>(), shape.0 * shape.1).prop_map(move |flags| Array2::from_shape_vec(shape, flags).unwrap());
+        (Just(rows), Just(emission), matrix(shape.0, shape.1), of(matrix(shape.0, shape.1)), flags)
+    });
+    (head, body).prop_map(move |(head, (acquisitions, emission, values, standard, flags))| {
+        let (title, quantity, role, sample, instrument, white_reference, excitations, derivation, components) = head;
+        Measurement {
+            id: id.clone(),
+            title,
+            quantity,
+            role,
+            sample,
+            instrument,
+            white_reference,
+            emission,
+            excitations,
+            acquisitions,
+            values,
+            flags,
+            uncertainty: Uncertainty { standard, components },
+            derivation,
+        }
+    })
+}
+
+fn light(id: Id) -> impl Strategy<Value = Light> {
+    let spectrum = (quantity(), wavelengths(), numbers(6), vec(any::<u16>(), 0..6))
+        .prop_map(|(quantity, axis, values, flags)| LightSpectrum { quantity, axis, values, flags });
+    (of(text()), of(spectrum)).prop_map(move |(title, spectrum)| Light { id: id.clone(), title, spectrum })
+}
+
+fn sample(id: Id) -> impl Strategy<Value = Sample> {
+    (of(text()), of(text()), of(text()), any::<bool>()).prop_map(move |(title, material, mark, simulated)| Sample {
+        id: id.clone(),
+        title,
+        material,
+        mark,
+        simulated,
+    })
+}
+
+fn instrument(id: Id) -> impl Strategy<Value = Instrument> {
+    (of(text()), of(text()), of(text()), of(text()), of(number())).prop_map(
+        move |(model, serial, aperture, accessories, distance_mm)| Instrument {
+            id: id.clone(),
+            model,
+            serial,
+            aperture,
+            accessories,
+            distance_mm,
+        },
+    )
+}
+
+fn white_reference(id: Id) -> impl Strategy<Value = WhiteReference> {
+    (of(text()), of(text()), numbers(4), numbers(4), of(number())).prop_map(
+        move |(title, certificate, certified_nm, certified_factor, certified_relative_uncertainty)| WhiteReference {
+            id: id.clone(),
+            title,
+            certificate,
+            certified_nm,
+            certified_factor,
+            certified_relative_uncertainty,
+        },
+    )
+}
+
+fn parameter() -> impl Strategy<Value = FittedParameter> {
+    (text(), text(), numbers(3), numbers(3), numbers(3)).prop_map(
+        |(name, unit, value, standard_uncertainty, shared_relative_uncertainty)| FittedParameter {
+            name,
+            unit,
+            value,
+            standard_uncertainty,
+            shared_relative_uncertainty,
+        },
+    )
+}
+
+fn term() -> impl Strategy<Value = FittedTerm> {
+    (select(TermKind::ALL), of(select(Distribution::ALL)), of(select(Denominator::ALL)), vec(parameter(), 0..4))
+        .prop_map(|(kind, distribution, denominator, parameters)| FittedTerm {
+            kind,
+            distribution,
+            denominator,
+            parameters,
+        })
+}
+
+fn separability() -> impl Strategy<Value = Separability> {
+    let lists = (numbers(3), numbers(3), numbers(3), numbers(3), numbers(3), numbers(3));
+    (lists, (number(), number(), number(), number())).prop_map(|(lists, numbers)| Separability {
+        theta_i_deg: lists.0,
+        mean_over_viewing: lists.1,
+        spread_over_viewing: lists.2,
+        theta_v_deg: lists.3,
+        mean_over_incidence: lists.4,
+        spread_over_incidence: lists.5,
+        cosine_amplitude: numbers.0,
+        cosine_relative_rms: numbers.1,
+        constancy_relative_rms: numbers.2,
+        rank_one_relative_rms: numbers.3,
+    })
+}
+
+fn model(id: Id, measurements: &[Id]) -> impl Strategy<Value = Model> + use<> {
+    let head = (of(text()), select(measurements.to_vec()), text(), text(), reference(), text(), emission());
+    let middle = (
+        vec(term(), 0..3),
+        vec(text(), 0..3),
+        (0_usize..3, 0_usize..3).prop_flat_map(|(rows, columns)| matrix(rows, columns)),
+        (number(), number(), any::<u64>(), any::<u64>()),
+    );
+    let tail = (any::<bool>(), text(), vec(text(), 0..3), of(separability()));
+    (head, middle, tail).prop_map(move |(head, middle, tail)| Model {
+        id: id.clone(),
+        title: head.0,
+        measurement: head.1,
+        data_digest: head.2,
+        reduction: head.3,
+        reference: head.4,
+        unit: head.5,
+        emission: head.6,
+        terms: middle.0,
+        covariance_parameters: middle.1,
+        covariance: middle.2,
+        residuals: Residuals {
+            rms: middle.3.0,
+            reduced_chi_square: middle.3.1,
+            count: middle.3.2,
+            left_out: middle.3.3,
+        },
+        converged: tail.0,
+        method: tail.1,
+        identifiability: tail.2,
+        separability: tail.3,
+    })
+}
+
+fn place() -> impl Strategy<Value = Place> {
+    (of(text()), of(any::<u64>()), of(any::<u64>()), of(text()), vec(any::<u64>(), 0..3))
+        .prop_map(|(file, line, byte, path, index)| Place { file, line, byte, path, index })
+}
+
+fn receipt() -> impl Strategy<Value = Receipt> {
+    let input = (text(), text(), any::<u64>(), text(), any::<u64>())
+        .prop_map(|(name, sha256, bytes, dialect, records)| InputFile { name, sha256, bytes, dialect, records });
+    let assumption = (text(), place()).prop_map(|(text, place)| Assumption { text, place });
+    let notice = (text(), place()).prop_map(|(text, place)| Notice { text, place });
+    (text(), vec(input, 0..3), vec(assumption, 0..3), vec(text(), 0..3), vec(notice, 0..3)).prop_map(
+        |(tool, inputs, assumptions, unfilled, notices)| Receipt { tool, inputs, assumptions, unfilled, notices },
+    )
+}
+
+fn provenance() -> impl Strategy<Value = Provenance> {
+    let step = (text(), text(), of(text())).prop_map(|(tool, action, time)| Step { tool, action, time });
+    (vec(receipt(), 0..3), vec(step, 0..3)).prop_map(|(receipts, steps)| Provenance { receipts, steps })
+}
+
+/// One part for each id.
+fn parts<T: std::fmt::Debug + 'static, S: Strategy<Value = T> + 'static>(
+    ids: &[Id],
+    part: impl Fn(Id) -> S,
+) -> BoxedStrategy<Vec<T>> {
+    ids.iter().map(|id| part(id.clone()).boxed()).collect::<Vec<_>>().boxed()
+}
+
+/// Any consistent document.
+pub fn document() -> impl Strategy<Value = Document> {
+    let all = (names(), names(), names(), names(), names(), names());
+    all.prop_flat_map(|(samples, instruments, lights, references, measurements, models)| {
+        let models = if measurements.is_empty() { vec![] } else { models };
+        let names = Names { samples, instruments, lights, references, measurements, models };
+        let head = (of(text()), of(text()), of(text()), provenance());
+        let parts = (
+            parts(&names.samples, sample),
+            parts(&names.instruments, instrument),
+            parts(&names.lights, light),
+            parts(&names.references, white_reference),
+            parts(&names.measurements, |id| measurement(id, &names)),
+            parts(&names.models, |id| model(id, &names.measurements)),
+        );
+        (head, parts)
+    })
+    .prop_map(|((title, license, citation, provenance), parts)| Document {
+        title,
+        license,
+        citation,
+        samples: parts.0,
+        instruments: parts.1,
+        lights: parts.2,
+        white_references: parts.3,
+        measurements: parts.4,
+        models: parts.5,
+        provenance,
+    })
+}

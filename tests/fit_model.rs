@@ -1,0 +1,177 @@
+//! From a measurement to a model: what a user reads of a fit is true.
+#![allow(clippy::unwrap_used)]
+
+mod common {
+    pub mod scans;
+}
+
+use bbrf::dataset::{Acquisition, Document, Id, Measurement, Model, Reduction, Role};
+use bbrf::fit::{FitError, FitOptions, fit_measurement};
+use bbrf::quantity::{
+    Component, CorrelatedOver, EmissionAxis, Geometry, Part, Quantity, QuantityKind, Reference, SignHabit, Uncertainty,
+};
+use bbrf::terms::TermKind;
+use common::scans::{Random, Truth, measure, paper_grid};
+use ndarray::Array2;
+
+const FIXED: Reference = Reference::FixedGeometry { theta_i_deg: 0.0, theta_v_deg: 45.0 };
+
+fn document(grid: &[Geometry], values: Vec<f64>, sigma: Option<Vec<f64>>, reference: Reference) -> Document {
+    let shape = (grid.len(), 1);
+    let mut quantity = Quantity::unstated(QuantityKind::BandRadianceFactor);
+    quantity.reference = reference;
+    let measurement = Measurement {
+        id: Id::new("scan").unwrap(),
+        title: None,
+        quantity,
+        role: Role::Sample,
+        sample: None,
+        instrument: None,
+        white_reference: None,
+        emission: EmissionAxis::Band { band: None },
+        excitations: Vec::new(),
+        acquisitions: grid.iter().zip(0..).map(|(g, order)| Acquisition::at(Some(*g), order)).collect(),
+        values: Array2::from_shape_vec(shape, values).unwrap(),
+        flags: Array2::zeros(shape),
+        uncertainty: Uncertainty {
+            standard: sigma.map(|sigma| Array2::from_shape_vec(shape, sigma).unwrap()),
+            components: Vec::new(),
+        },
+        derivation: None,
+    };
+    Document { measurements: vec![measurement], ..Document::default() }
+}
+
+fn fit(document: &Document, options: &FitOptions) -> Result<Model, FitError> {
+    fit_measurement(document, &document.measurements[0], options)
+}
+
+fn paper_sphere() -> Truth {
+    Truth { albedo: 0.8, intensity: 30.0, roughness: 0.05, index_minus_one: 0.45 }
+}
+
+#[test]
+fn a_model_holds_everything_that_is_needed_to_check_it() {
+    let grid = paper_grid();
+    let (values, sigma) = measure(&paper_sphere(), &grid, 0.01, &mut Random::new(1));
+    let document = document(&grid, values, Some(sigma), FIXED);
+    let model = fit(&document, &FitOptions { data_digest: "sha256:abc".into(), ..FitOptions::default() }).unwrap();
+    assert!(model.converged);
+    assert_eq!(model.data_digest, "sha256:abc");
+    assert_eq!(model.residuals.count, 272);
+    assert!((model.residuals.reduced_chi_square - 1.0).abs() < 0.3, "{}", model.residuals.reduced_chi_square);
+    let names = [
+        "lambertian.albedo",
+        "torrance-sparrow.intensity",
+        "torrance-sparrow.roughness",
+        "torrance-sparrow.refractive_index",
+    ];
+    assert_eq!(model.covariance_parameters, names);
+    let specular = &model.terms[1];
+    for (k, parameter) in specular.parameters.iter().enumerate() {
+        let variance = model.covariance[(k + 1, k + 1)];
+        assert_eq!(parameter.standard_uncertainty[0], variance.sqrt(), "{}", parameter.name);
+        let truth = [30.0, 0.05, 1.45][k];
+        let off = (parameter.value[0] - truth) / parameter.standard_uncertainty[0];
+        assert!(off.abs() < 4.0, "{}: {off} standard uncertainties off", parameter.name);
+    }
+    assert!(model.identifiability.is_empty(), "{:?}", model.identifiability);
+}
+
+#[test]
+fn an_unstated_reference_refuses_unless_one_is_assumed_and_then_says_so() {
+    let grid = paper_grid();
+    let (values, sigma) = measure(&paper_sphere(), &grid, 0.01, &mut Random::new(1));
+    let document = document(&grid, values, Some(sigma), Reference::Unstated);
+    let error = fit(&document, &FitOptions::default()).unwrap_err();
+    assert!(error.to_string().contains("same-geometry"), "{error}");
+    let model = fit(&document, &FitOptions { assume_reference: Some(FIXED), ..FitOptions::default() }).unwrap();
+    assert!(model.identifiability.iter().any(|finding| finding.contains("assumed")), "{:?}", model.identifiability);
+}
+
+#[test]
+fn a_diffuser_is_reported_without_a_specular_term() {
+    let grid = paper_grid();
+    let truth = Truth { intensity: 0.0, ..paper_sphere() };
+    let (values, sigma) = measure(&truth, &grid, 0.01, &mut Random::new(2));
+    let document = document(&grid, values, Some(sigma), FIXED);
+    let model = fit(&document, &FitOptions::default()).unwrap();
+    assert_eq!(model.terms.len(), 1);
+    assert!(model.identifiability.iter().any(|finding| finding.contains("no specular term seen")));
+    let separability = model.separability.unwrap();
+    assert!(separability.cosine_relative_rms < 0.01 && separability.constancy_relative_rms < 0.01, "{separability:?}");
+    assert!(separability.rank_one_relative_rms < 0.015);
+    assert!((separability.cosine_amplitude - 0.8).abs() < 0.01);
+}
+
+#[test]
+fn a_highlight_is_not_separable() {
+    let grid = paper_grid();
+    let (values, sigma) = measure(&paper_sphere(), &grid, 0.01, &mut Random::new(2));
+    let document = document(&grid, values, Some(sigma), FIXED);
+    let separability = fit(&document, &FitOptions::default()).unwrap().separability.unwrap();
+    assert!(separability.rank_one_relative_rms > 0.2, "{separability:?}");
+}
+
+#[test]
+fn a_luminescent_factor_is_fitted_with_the_luminescent_term() {
+    let grid = paper_grid();
+    let truth = Truth { intensity: 0.0, ..paper_sphere() };
+    let (values, sigma) = measure(&truth, &grid, 0.01, &mut Random::new(2));
+    let mut document = document(&grid, values, Some(sigma), FIXED);
+    document.measurements[0].quantity.part = Part::Luminescent;
+    let model = fit(&document, &FitOptions::default()).unwrap();
+    assert_eq!(model.terms[0].kind, TermKind::Luminescent);
+    let both = vec![TermKind::Lambertian, TermKind::Luminescent];
+    let error = fit(&document, &FitOptions { terms: both, ..FitOptions::default() }).unwrap_err();
+    assert_eq!(error, FitError::TwoDiffuseTerms);
+}
+
+#[test]
+fn what_all_values_share_is_kept_apart() {
+    let grid = paper_grid();
+    let (values, sigma) = measure(&paper_sphere(), &grid, 0.01, &mut Random::new(1));
+    let mut document = document(&grid, values, Some(sigma), FIXED);
+    let alone = fit(&document, &FitOptions::default()).unwrap();
+    document.measurements[0].uncertainty.components.push(Component {
+        name: "certificate".into(),
+        relative: vec![0.02],
+        correlated_over: CorrelatedOver::All,
+    });
+    let shared = fit(&document, &FitOptions::default()).unwrap();
+    assert_eq!(alone.covariance, shared.covariance);
+    assert_eq!(shared.terms[0].parameters[0].shared_relative_uncertainty, [0.02]);
+    assert!(shared.terms[1].parameters[1].shared_relative_uncertainty.is_empty(), "a roughness has no scale");
+}
+
+#[test]
+fn a_scan_near_the_normal_says_that_it_cannot_know_the_index() {
+    let grid: Vec<Geometry> =
+        paper_grid().into_iter().filter(|g| g.incidence.theta_deg() <= 30.0 && g.viewing.theta_deg() <= 30.0).collect();
+    let (values, sigma) = measure(&paper_sphere(), &grid, 0.01, &mut Random::new(4));
+    let document = document(&grid, values, Some(sigma), FIXED);
+    let model = fit(&document, &FitOptions::default()).unwrap();
+    let finding = model.identifiability.iter().find(|finding| finding.starts_with("refractive index"));
+    assert!(finding.is_some_and(|text| text.contains("measure beyond 60 degrees")), "{:?}", model.identifiability);
+}
+
+#[test]
+fn without_uncertainties_the_residuals_give_the_scale_and_it_is_said() {
+    let grid = paper_grid();
+    let (values, _) = measure(&paper_sphere(), &grid, 0.01, &mut Random::new(1));
+    let document = document(&grid, values, None, FIXED);
+    let model = fit(&document, &FitOptions::default()).unwrap();
+    assert!(model.identifiability[0].contains("no uncertainties"));
+    assert!(model.residuals.reduced_chi_square.is_nan());
+    assert!(model.terms[0].parameters[0].standard_uncertainty[0] > 0.0);
+}
+
+#[test]
+fn nothing_to_fit_is_an_error_with_the_reason() {
+    let geometry = Geometry::from_signed(0.0, 20.0, SignHabit::MirrorAtEqual).unwrap();
+    let few = document(&[geometry; 3], vec![1.0, 1.1, 0.9], Some(vec![0.1; 3]), FIXED);
+    let error = fit(&few, &FitOptions::default()).unwrap_err().to_string();
+    assert!(error.contains("3 usable values for 4 parameters"), "{error}");
+    let band = FitOptions { reduction: "band:500-600".parse::<Reduction>().unwrap(), ..FitOptions::default() };
+    assert!(fit(&few, &band).unwrap_err().to_string().contains("--reduce"));
+}

@@ -1,0 +1,147 @@
+//! Laws that hold for every geometry and parameter. `BBRF_PROPTEST_CASES` asks for more cases; the seed is fixed.
+#![allow(clippy::unwrap_used)]
+
+use bbrf::fit::{Fitter, GeometrySet, Terms};
+use bbrf::quantity::{Geometry, Reference};
+use bbrf::terms::{Denominator, Distribution, Term, TorranceSparrow};
+use proptest::prelude::*;
+use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
+
+fn runner() -> TestRunner {
+    let cases = std::env::var("BBRF_PROPTEST_CASES").ok().and_then(|text| text.parse().ok()).unwrap_or(512);
+    let config = Config { cases, failure_persistence: None, ..Config::default() };
+    TestRunner::new_with_rng(config, TestRng::from_seed(RngAlgorithm::ChaCha, &[7; 32]))
+}
+
+fn geometry() -> impl Strategy<Value = Geometry> {
+    (0.0..=90.0, 0.0..360.0, 0.0..=90.0, 0.0..360.0)
+        .prop_map(|(ti, pi, tv, pv)| Geometry::from_degrees(ti, pi, tv, pv).unwrap())
+}
+
+fn specular() -> impl Strategy<Value = TorranceSparrow> {
+    let distribution = prop::sample::select(Distribution::ALL);
+    let denominator = prop::sample::select(Denominator::ALL);
+    (0.01..100.0, -3.0..0.3, 1.001..4.0, distribution, denominator).prop_map(
+        |(intensity, log_width, refractive_index, distribution, denominator)| TorranceSparrow {
+            intensity,
+            roughness: distribution.roughness_from_half_width(10_f64.powf(log_width)),
+            refractive_index,
+            distribution,
+            denominator,
+        },
+    )
+}
+
+#[test]
+fn no_term_is_negative_or_nan_anywhere() {
+    let check = |(geometry, term): (Geometry, TorranceSparrow)| {
+        if let Ok(value) = Term::TorranceSparrow(term).evaluate(&geometry, &Reference::None) {
+            prop_assert!(value.value >= 0.0 && value.value.is_finite(), "{value:?}");
+            prop_assert!(value.by.iter().all(|by| by.is_finite()), "{value:?}");
+        }
+        let factors = term.factors(&geometry).unwrap();
+        prop_assert!((0.0..=1.0).contains(&factors.g) && (0.0..=1.0).contains(&factors.f));
+        Ok(())
+    };
+    runner().run(&(geometry(), specular()), check).unwrap();
+}
+
+/// A BRDF times cos(theta_i): with cos(theta_v) below, the term over cos(theta_i) is symmetric in L and V.
+#[test]
+fn the_denominator_cos_theta_v_makes_a_reciprocal_brdf() {
+    let check = |(geometry, mut term): (Geometry, TorranceSparrow)| {
+        term.denominator = Denominator::CosThetaV;
+        let swapped = Geometry { incidence: geometry.viewing, viewing: geometry.incidence };
+        let brdf = |g: &Geometry| {
+            Term::TorranceSparrow(term).evaluate(g, &Reference::None).map(|v| v.value / g.incidence.cos_theta())
+        };
+        if let (Ok(there), Ok(back)) = (brdf(&geometry), brdf(&swapped)) {
+            prop_assert!((there - back).abs() <= 1e-12 * there.abs() + 1e-300, "{there:e} {back:e}");
+        }
+        Ok(())
+    };
+    runner().run(&(geometry(), specular()), check).unwrap();
+}
+
+#[test]
+fn derivatives_agree_with_difference_quotients() {
+    let check = |(geometry, term): (Geometry, TorranceSparrow)| {
+        let at = |change: &dyn Fn(&mut TorranceSparrow)| {
+            let mut changed = term;
+            change(&mut changed);
+            Term::TorranceSparrow(changed).evaluate(&geometry, &Reference::None).map(|value| value.value)
+        };
+        let Ok(value) = Term::TorranceSparrow(term).evaluate(&geometry, &Reference::None) else { return Ok(()) };
+        if value.value < 1e-290 {
+            return Ok(()); // a difference of subnormal numbers has no digits
+        }
+        let relative = 1e-5;
+        let (dr, dn) = (relative * term.roughness, relative * (term.refractive_index - 1.0));
+        let by_roughness = (at(&|t| t.roughness += dr).unwrap() - at(&|t| t.roughness -= dr).unwrap()) / (2.0 * dr);
+        let by_index =
+            (at(&|t| t.refractive_index += dn).unwrap() - at(&|t| t.refractive_index -= dn).unwrap()) / (2.0 * dn);
+        // Third derivatives of exp(-u) grow with u^3; far out in the lobe the quotient says nothing.
+        let slope = value.by[1].abs() * term.roughness / value.value.max(1e-300);
+        if slope < 100.0 {
+            let scale = value.value / term.roughness;
+            prop_assert!(
+                (by_roughness - value.by[1]).abs() <= 1e-4 * (value.by[1].abs() + scale),
+                "{by_roughness} {value:?}"
+            );
+        }
+        let scale = value.value / (term.refractive_index - 1.0);
+        prop_assert!((by_index - value.by[2]).abs() <= 1e-6 * (value.by[2].abs() + scale), "{by_index} {value:?}");
+        Ok(())
+    };
+    runner().run(&(geometry(), specular()), check).unwrap();
+}
+
+#[test]
+fn a_factor_is_y_over_e_over_what_the_reference_received() {
+    let check = |(geometry, term): (Geometry, TorranceSparrow)| {
+        let term = Term::TorranceSparrow(term);
+        let fixed = Reference::FixedGeometry { theta_i_deg: 60.0, theta_v_deg: 0.0 };
+        let (Ok(plain), Ok(factor)) = (term.evaluate(&geometry, &Reference::None), term.evaluate(&geometry, &fixed))
+        else {
+            return Ok(());
+        };
+        prop_assert_eq!(factor.value, plain.value / 0.5);
+        Ok(())
+    };
+    runner().run(&(geometry(), specular()), check).unwrap();
+}
+
+/// Every form of D with every denominator and reference gives its parameters back, out of the plane too.
+#[test]
+fn exact_data_of_every_form_give_back_their_parameters() {
+    let angles = [0.0, 15.0, 30.0, 45.0, 60.0, 75.0];
+    let grid: Vec<Geometry> = angles
+        .iter()
+        .flat_map(|&ti| angles.iter().map(move |&tv| (ti, tv)))
+        .flat_map(|(ti, tv)| [0.0, 60.0, 150.0, 180.0].map(|pv| Geometry::from_degrees(ti, 180.0, tv, pv).unwrap()))
+        .filter(|geometry| !geometry.is_retro(1.0))
+        .collect();
+    let references =
+        [Reference::None, Reference::SameGeometry, Reference::FixedGeometry { theta_i_deg: 45.0, theta_v_deg: 0.0 }];
+    for &distribution in Distribution::ALL {
+        for &denominator in Denominator::ALL {
+            for reference in references {
+                let roughness = distribution.roughness_from_half_width(0.2);
+                let truth =
+                    TorranceSparrow { intensity: 5.0, roughness, refractive_index: 1.5, distribution, denominator };
+                let terms = [Term::Lambertian { albedo: 0.3 }, Term::TorranceSparrow(truth)];
+                let value = |g: &Geometry| terms.iter().map(|t| t.evaluate(g, &reference).unwrap().value).sum::<f64>();
+                let values: Vec<f64> = grid.iter().map(value).collect();
+                let sigma: Vec<f64> = values.iter().map(|value| 1e-3 * value).collect();
+                let set = GeometrySet::new(&grid, &reference, distribution, denominator).unwrap();
+                let fitter = Fitter::new(&set, Terms { diffuse: true, specular: true });
+                let fit = fitter.fit(&values, Some(&sigma)).unwrap();
+                let found = [fit.bands[0].diffuse, fit.bands[0].intensity, fit.roughness, fit.refractive_index()];
+                for (found, expected) in found.into_iter().zip([0.3, 5.0, roughness, 1.5]) {
+                    let off = (found / expected - 1.0).abs();
+                    assert!(off < 1e-5, "{distribution} {denominator} {reference}: {found}, expected {expected}");
+                }
+            }
+        }
+    }
+}

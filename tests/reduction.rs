@@ -1,0 +1,156 @@
+//! A band of a factor is a ratio of sums; V(lambda) is the CIE's; what cannot be reduced says why.
+#![allow(clippy::unwrap_used)]
+
+use bbrf::dataset::{Acquisition, Derivation, Document, Id, Measurement, ReduceError, Reduction, Role, reduce};
+use bbrf::quantity::{
+    Band, Bandpass, Component, CorrelatedOver, EmissionAxis, Flag, Geometry, Part, Quantity, QuantityKind, Reference,
+    SignHabit, Uncertainty, WavelengthAxis,
+};
+use ndarray::{Array2, array};
+
+fn measurement(id: &str, kind: QuantityKind, role: Role, nm: &[f64], values: Array2<f64>) -> Measurement {
+    let rows = values.nrows() as u32;
+    let geometry = |k: u32| Geometry::from_signed(10.0 * f64::from(k), 20.0, SignHabit::MirrorAtEqual).unwrap();
+    Measurement {
+        id: Id::new(id).unwrap(),
+        title: None,
+        quantity: Quantity::absolute(kind, Part::Total),
+        role,
+        sample: None,
+        instrument: None,
+        white_reference: None,
+        emission: EmissionAxis::Wavelengths(WavelengthAxis::new(nm.to_vec(), Bandpass::Unstated).unwrap()),
+        excitations: Vec::new(),
+        acquisitions: (0..rows).map(|k| Acquisition::at(Some(geometry(k)), k)).collect(),
+        flags: Array2::zeros(values.dim()),
+        values,
+        uncertainty: Uncertainty::default(),
+        derivation: None,
+    }
+}
+
+/// Two rows, three wavelengths; the white radiates 1, 2, 5 and is certified at 0.5.
+fn scan() -> Document {
+    let nm = [500.0, 510.0, 520.0];
+    let white = measurement("white", QuantityKind::SpectralRadiance, Role::White, &nm, array![[1.0, 2.0, 5.0]]);
+    let radiance = measurement(
+        "radiance",
+        QuantityKind::SpectralRadiance,
+        Role::Sample,
+        &nm,
+        array![[1.0, 1.0, 1.0], [2.0, 0.0, 4.0]],
+    );
+    let mut factor =
+        measurement("scan", QuantityKind::RadianceFactor, Role::Sample, &nm, array![[0.5, 0.25, 0.1], [1.0, 0.0, 0.4]]);
+    factor.quantity.reference = Reference::FixedGeometry { theta_i_deg: 0.0, theta_v_deg: 45.0 };
+    factor.quantity.certified_factor = vec![0.5];
+    factor.derivation = Some(Derivation {
+        numerator: Id::new("radiance").unwrap(),
+        numerator_row: vec![0, 1],
+        reference: Id::new("white").unwrap(),
+        reference_group: vec![0],
+        row_reference: vec![0, 0],
+        dark: None,
+    });
+    Document { measurements: vec![white, radiance, factor], ..Document::default() }
+}
+
+fn band(from_nm: f64, to_nm: f64) -> Reduction {
+    Reduction::Band(Band { from_nm, to_nm })
+}
+
+#[test]
+fn a_band_is_a_ratio_of_sums() {
+    let document = scan();
+    let reduced = reduce(&document, document.measurement("scan").unwrap(), band(500.0, 520.0)).unwrap();
+    // sum of sample radiances over sum of white radiances, times the certified factor.
+    assert!((reduced.values[(0, 0)] - 0.5 * 3.0 / 8.0).abs() < 1e-15);
+    assert!((reduced.values[(0, 1)] - 0.5 * 6.0 / 8.0).abs() < 1e-15);
+    assert_eq!(reduced.reduction, "band:500-520");
+    assert_eq!(reduced.kind, QuantityKind::BandRadianceFactor);
+}
+
+#[test]
+fn the_default_band_is_where_the_signal_exceeds_a_tenth_of_its_peak() {
+    let nm: Vec<f64> = (0..9).map(|k| 500.0 + 10.0 * f64::from(k)).collect();
+    let spectrum = [0.05, 0.2, 0.6, 1.0, 0.5, 0.11, 0.09, 0.5, 0.0];
+    let values = Array2::from_shape_fn((2, 9), |(row, k)| spectrum[k] * (row + 1) as f64);
+    let measurement = measurement("m", QuantityKind::SpectralRadiance, Role::Sample, &nm, values);
+    let document = Document { measurements: vec![measurement], ..Document::default() };
+    let reduced = reduce(&document, &document.measurements[0], Reduction::Auto).unwrap();
+    // The run around the peak: the second hump behind a gap is not part of it.
+    assert_eq!(reduced.reduction, "band:510-550");
+    assert!((reduced.values[(0, 0)] - 10.0 * 2.41).abs() < 1e-12, "a radiance is summed times its step");
+    assert_eq!(reduced.kind, QuantityKind::BandRadiance);
+}
+
+#[test]
+fn luminance_weights_with_the_efficiency_of_the_eye() {
+    let nm: Vec<f64> = (0..401).map(|k| 380.0 + f64::from(k)).collect();
+    let values = Array2::from_elem((1, 401), 1.0);
+    let measurement = measurement("m", QuantityKind::SpectralRadiance, Role::Sample, &nm, values);
+    let document = Document { measurements: vec![measurement], ..Document::default() };
+    let reduced = reduce(&document, &document.measurements[0], Reduction::Luminance).unwrap();
+    // The integral of V(lambda) is 106.857 nm (CIE 018:2019), times 683 lm/W.
+    let expected = 683.002 * 106.857;
+    assert!((reduced.values[(0, 0)] / expected - 1.0).abs() < 1e-4, "{}", reduced.values[(0, 0)] / 683.002);
+    assert_eq!(reduced.kind, QuantityKind::Luminance);
+}
+
+#[test]
+fn a_flagged_value_is_never_a_value() {
+    let mut document = scan();
+    document.measurements[2].flags[(1, 2)] = Flag::Saturated.bit();
+    let reduced = reduce(&document, document.measurement("scan").unwrap(), band(500.0, 520.0)).unwrap();
+    assert_eq!((reduced.rows, reduced.left_out), (vec![0], 1));
+    document.measurements[2].flags.fill(Flag::BelowDetection.bit());
+    let error = reduce(&document, document.measurement("scan").unwrap(), band(500.0, 520.0)).unwrap_err();
+    assert!(matches!(error, ReduceError::EmptyBand { .. }), "{error}");
+}
+
+#[test]
+fn the_scale_of_a_record_is_independent_between_rows_and_the_white_is_shared() {
+    let mut document = scan();
+    document.measurements[2].uncertainty = Uncertainty {
+        standard: Some(Array2::zeros((2, 3))),
+        components: vec![
+            Component {
+                name: "record scale".into(),
+                relative: vec![0.01],
+                correlated_over: CorrelatedOver::Wavelengths,
+            },
+            Component { name: "certificate".into(), relative: vec![0.02], correlated_over: CorrelatedOver::All },
+        ],
+    };
+    let reduced = reduce(&document, document.measurement("scan").unwrap(), band(500.0, 520.0)).unwrap();
+    let sigma = reduced.sigma.unwrap();
+    assert!((sigma[(0, 1)] / reduced.values[(0, 1)] - 0.01).abs() < 1e-15);
+    assert!((reduced.shared_relative[0] - 0.02).abs() < 1e-15);
+}
+
+#[test]
+fn a_factor_without_its_reference_says_what_its_band_means() {
+    let mut document = scan();
+    document.measurements[2].derivation = None;
+    let reduced = reduce(&document, document.measurement("scan").unwrap(), band(500.0, 520.0)).unwrap();
+    assert!((reduced.values[(0, 0)] - (0.5 + 0.25 + 0.1) / 3.0).abs() < 1e-15);
+    assert!(reduced.notes[0].contains("equal-energy"), "{:?}", reduced.notes);
+}
+
+#[test]
+fn every_wavelength_keeps_its_gaps() {
+    let mut document = scan();
+    document.measurements[2].flags[(1, 2)] = Flag::Saturated.bit();
+    let reduced = reduce(&document, document.measurement("scan").unwrap(), Reduction::None).unwrap();
+    assert_eq!(reduced.values.dim(), (3, 2));
+    assert!(reduced.values[(2, 1)].is_nan() && reduced.values[(2, 0)] == 0.1);
+}
+
+#[test]
+fn reductions_are_spelled_as_on_the_command_line() {
+    assert_eq!("band:500-620".parse::<Reduction>(), Ok(band(500.0, 620.0)));
+    for wrong in ["band:620-500", "band:500", "band:a-b", "v", "band:0-500"] {
+        let error = wrong.parse::<Reduction>().unwrap_err();
+        assert!(error.to_string().contains("luminance"), "{error}");
+    }
+}
