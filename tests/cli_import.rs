@@ -1,4 +1,6 @@
 //! `bbrf import` on the command line: exit status, messages, whole files or none. Writing depends on the container.
+// A failed step of a fixture is a failed test.
+#![allow(clippy::unwrap_used, clippy::panic)]
 
 mod spectra;
 

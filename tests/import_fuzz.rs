@@ -1,5 +1,7 @@
 //! Whatever bytes come in: a document or an error, in time, never a panic. `BBRF_PROPTEST_CASES` sets the number of
 //! cases.
+// A failed step of a fixture is a failed test.
+#![allow(clippy::unwrap_used, clippy::panic)]
 
 mod spectra;
 

@@ -1,4 +1,6 @@
 //! Real files, where they are beside the repository: every text imports or says why not.
+// A failed step of a fixture is a failed test.
+#![allow(clippy::unwrap_used, clippy::panic)]
 
 mod spectra;
 

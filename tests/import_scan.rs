@@ -1,4 +1,6 @@
 //! Scans: manifests, patterns, orders; roles, references, repeats, uncertainty.
+// A failed step of a fixture is a failed test.
+#![allow(clippy::unwrap_used, clippy::panic)]
 
 mod spectra;
 

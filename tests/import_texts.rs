@@ -1,4 +1,6 @@
 //! What is accepted: encodings, line ends, prompts, other models, tables of every dialect.
+// A failed step of a fixture is a failed test.
+#![allow(clippy::unwrap_used, clippy::panic)]
 
 mod spectra;
 

@@ -9,9 +9,9 @@ use super::error::ImportError;
 use super::mean::{Mean, Spread};
 use super::noise::{Noise, RECORD_SCALE};
 use super::plan::{Plan, geometry_key};
+use super::raw::record_scale;
 use super::receipt::Notes;
 use super::reference::{self, Groups};
-use super::scan::record_scale;
 use crate::dataset::{Acquisition, Derivation, Id, Measurement, Role, WhiteReference};
 use crate::quantity::{
     Basis, Component, CorrelatedOver, Flag, Flags, NormalisedAt, Part, Quantity, QuantityKind, Uncertainty,

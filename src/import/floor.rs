@@ -8,6 +8,7 @@
 //! Samples within one per cent of it are flagged; nothing is changed.
 
 use super::plan::Entry;
+use crate::dataset::Role;
 use crate::quantity::Flag;
 
 /// No floor above this has been seen, W m-2 sr-1 nm-1 (the highest known: 3.5e-6).
@@ -35,7 +36,10 @@ pub(super) struct Found {
 
 /// Flags the samples on the floor as below detection. All entries with data share one axis.
 pub(super) fn flag_floor(entries: &mut [Entry]) -> Found {
-    let usable = |entry: &&Entry| entry.record.rejection.is_none() && entry.record.fixed_decimals.is_none();
+    // A lamp has an axis and a range of its own; fixed decimals show zeros and no floor.
+    let usable = |entry: &&Entry| {
+        entry.role != Role::Lamp && entry.record.rejection.is_none() && entry.record.fixed_decimals.is_none()
+    };
     let spectra: Vec<&[f64]> = entries.iter().filter(usable).map(|entry| entry.record.values.as_slice()).collect();
     let floor = floor(&spectra);
     let mut found = Found { wavelengths: floor.iter().flatten().count(), ..Found::default() };

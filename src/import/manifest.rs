@@ -20,7 +20,7 @@ use super::receipt::{Notes, listed};
 use super::record::Record;
 use super::rows::{Row, Rows};
 use super::source::Source;
-use super::{Format, Options, spectra, times};
+use super::{Format, Options, spectra};
 use crate::dataset::{Place, Role};
 
 const COLUMNS: &[&str] = &[
@@ -112,12 +112,7 @@ fn entry(row: &Row<'_>, plan: &mut Plan, files: &mut Files, notes: &mut Notes) -
     entry.excitation = plan.excitations.find(nm, row.text("light"));
     entry.repeat = row.whole("repeat")?;
     entry.exposure_ms = row.positive("exposure_ms")?;
-    if let Some(text) = row.text("time") {
-        let time = times::rfc3339(text, plan.settings.time_zone.as_deref());
-        entry.time = Some(time.ok_or_else(|| {
-            row.bad("time", text, "a time with its offset, as 2024-05-01T10:00:00+09:00, or the key `time-zone`")
-        })?);
-    }
+    entry.time = row.time(plan.settings.time_zone.as_deref())?;
     if role == Role::Sample && entry.geometry.is_none() {
         notes.notice(entry.place.clone(), format!("{name}: a sample row without angles; its geometry is unknown"));
     }

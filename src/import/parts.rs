@@ -120,10 +120,11 @@ pub(super) fn attach_instrument(
 }
 
 /// Adds a light without a spectrum for every one that the measurement names and the document lacks.
-pub(super) fn attach_lights(document: &mut Document, measurement: &Measurement) {
+pub(super) fn attach_lights(document: &mut Document, measurement: &Measurement, settings: &Settings) {
     for id in measurement.excitations.iter().filter_map(|excitation| excitation.light.as_ref()) {
         if !document.lights.iter().any(|light| light.id == *id) {
-            document.lights.push(Light { id: id.clone(), title: None, spectrum: None });
+            let title = settings.light.clone().filter(|name| Id::from_title(name) == *id);
+            document.lights.push(Light { id: id.clone(), title, spectrum: None });
         }
     }
 }

@@ -104,6 +104,11 @@ impl Plan {
     }
 }
 
+/// The first record with data among entries.
+pub(super) fn first_record<'a>(mut entries: impl Iterator<Item = &'a Entry>) -> Option<&'a Record> {
+    entries.find(|entry| entry.record.rejection.is_none()).map(|entry| &entry.record)
+}
+
 /// A geometry as a key; the azimuth of a direction along the normal says nothing.
 pub(super) fn geometry_key(geometry: &Geometry) -> [u64; 4] {
     let azimuth = |theta: f64, phi: f64| if theta == 0.0 { 0.0 } else { phi };

@@ -13,6 +13,7 @@
 use super::Options;
 use super::error::{ImportError, fault, quoted};
 use super::number::{DecimalMark, Printed, printed, value};
+use super::pr650_line::{Kind, is_later_header, is_range_report, is_status_code, kind, strip};
 use super::quality::{self, Action};
 use super::record::{Record, expect_wavelength, truncated};
 use super::source::Source;
@@ -21,75 +22,6 @@ use crate::quantity::{Flag, Flags, QuantityKind};
 
 /// Values at or below this are what the PR-655 and PR-670 print for zero (`1.000e-27`), W m-2 sr-1 nm-1.
 const LATER_MODEL_ZERO: f64 = 1e-20;
-
-/// What a line of a capture is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Kind {
-    Prompt,
-    Command,
-    Acknowledgement,
-    /// `qq,U`: a spectrum of the PR-650 follows.
-    Status,
-    /// `wwww.,value`.
-    Row,
-    /// One number: an integral.
-    Number,
-    /// A status with three or more further numbers.
-    Report,
-    Unknown,
-}
-
-/// True where a line can be the first of a capture.
-pub(super) fn starts_capture(text: &str) -> bool {
-    let bare = strip(text);
-    let fields: Vec<&str> = bare.split(',').map(str::trim).collect();
-    text.trim().starts_with('>')
-        || match kind(bare) {
-            Kind::Status => true,
-            Kind::Report => is_status_code(fields[0]) && is_unit(fields[1]),
-            Kind::Command => fields.len() == 1 && is_measuring_command(bare),
-            _ => false,
-        }
-}
-
-fn is_measuring_command(text: &str) -> bool {
-    let digits = text.get(1..).unwrap_or("");
-    text.starts_with(['D', 'M', 'd', 'm'])
-        && (1..=3).contains(&digits.len())
-        && digits.bytes().all(|b| b.is_ascii_digit())
-}
-
-/// A line without prompts and blanks at its ends.
-fn strip(text: &str) -> &str {
-    text.trim_matches(|c: char| c == '>' || c.is_whitespace())
-}
-
-/// A quality code: two digits on the PR-650, five on later models, or negative.
-fn is_status_code(field: &str) -> bool {
-    let digits = field.strip_prefix('-').unwrap_or(field);
-    let plain = !digits.is_empty() && digits.bytes().all(|byte| byte.is_ascii_digit());
-    plain && (matches!(digits.len(), 1 | 2 | 5) || field.starts_with('-') && digits.len() <= 5)
-}
-
-fn is_unit(field: &str) -> bool {
-    (1..=4).contains(&field.len()) && field.bytes().all(|byte| byte.is_ascii_digit())
-}
-
-fn kind(text: &str) -> Kind {
-    let Some(first) = text.chars().next() else { return Kind::Prompt };
-    if first.is_ascii_alphabetic() {
-        return Kind::Command;
-    }
-    let fields: Vec<&str> = text.split(',').map(str::trim).collect();
-    match fields.as_slice() {
-        [only] if only.bytes().all(|byte| byte.is_ascii_digit()) => Kind::Acknowledgement,
-        [only] if value(only).is_some() => Kind::Number,
-        [code, unit] if is_status_code(code) && is_unit(unit) => Kind::Status,
-        [_, _] if first.is_ascii_digit() => Kind::Row,
-        [_, _, _, ..] => Kind::Report,
-        _ => Kind::Unknown,
-    }
-}
 
 /// A wavelength grid that the instrument prints.
 #[derive(Debug, Clone, Copy)]
@@ -115,7 +47,7 @@ impl Grid {
 /// Reads every spectrum of a capture.
 ///
 /// # Errors
-/// [`ImportError`] with the line for everything that the format does not allow; see `research` of the format above.
+/// [`ImportError`] with the line for everything that the format does not allow.
 pub(super) fn parse(source: &Source, options: &Options) -> Result<Vec<Record>, ImportError> {
     let lines: Vec<Line<'_>> = source.text.lines().collect();
     let mut capture = Capture {
@@ -407,18 +339,4 @@ impl<'a> Capture<'a> {
         }
         Ok(self.records)
     }
-}
-
-/// `pppp,bbb.b,ffff.,wwww.,iii.` without the command that asked for it: the count agrees with the range.
-fn is_range_report(fields: &[&str]) -> bool {
-    let numbers: Vec<f64> = fields.iter().filter_map(|field| value(field)).collect();
-    match numbers.as_slice() {
-        &[points, _, first, last, step] => step > 0.0 && first >= 100.0 && (last - first) / step + 1.0 == points,
-        _ => false,
-    }
-}
-
-/// The header of a later model without its rows: peak wavelength and a photon count beyond every chromaticity.
-fn is_later_header(fields: &[&str]) -> bool {
-    fields.len() == 5 && fields[4].contains(['e', 'E']) && fields[2..].iter().all(|field| value(field).is_some())
 }

@@ -5,6 +5,7 @@ use super::error::{ImportError, fault, quoted};
 use super::keys::{Settings, key_line};
 use super::number::value;
 use super::source::Source;
+use super::times;
 use crate::dataset::Place;
 
 /// The rows of a table, by the names of its columns.
@@ -69,7 +70,6 @@ impl Rows {
             .has_headers(false)
             .flexible(true)
             .trim(csv::Trim::All)
-            .comment(Some(b'#'))
             .from_reader(source.text.rest_from(first).as_bytes());
         let mut rows = Vec::new();
         let mut record = csv::StringRecord::new();
@@ -179,6 +179,14 @@ impl<'a> Row<'a> {
     pub(crate) fn whole(&self, column: &str) -> Result<Option<u32>, ImportError> {
         let Some(text) = self.text(column) else { return Ok(None) };
         text.parse().map(Some).map_err(|_| self.bad(column, text, "a whole number"))
+    }
+
+    /// The time of the row as RFC 3339; the zone is that of all rows, where one is stated.
+    pub(crate) fn time(&self, zone: Option<&str>) -> Result<Option<String>, ImportError> {
+        let Some(text) = self.text("time") else { return Ok(None) };
+        times::rfc3339(text, zone).map(Some).ok_or_else(|| {
+            self.bad("time", text, "a time with its offset, as 2024-05-01T10:00:00+09:00, or the key `time-zone`")
+        })
     }
 
     /// The angles of the row; `None` where all fields are empty.

@@ -1,20 +1,13 @@
 //! From a plan to a document: raw measurements by role, lights, and the factor where there is a white reference.
 
-use ndarray::Array2;
-
 use super::angles::{Angles, check_habit, coverage};
 use super::error::{ImportError, fault};
-use super::keys::Settings;
-use super::noise::{Noise, RECORD_SCALE};
-use super::plan::{Entry, Plan};
+use super::plan::{Entry, Plan, first_record};
 use super::receipt::{Notes, listed};
 use super::record::Record;
-use super::{Options, factor, floor, parts, spectra, times};
-use crate::dataset::{Acquisition, Document, Id, Light, LightSpectrum, Measurement, Place, Role};
-use crate::quantity::{
-    Component, CorrelatedOver, EmissionAxis, Flag, Flags, Geometry, Part, Quantity, QuantityKind, Uncertainty,
-    WavelengthAxis,
-};
+use super::{Options, factor, floor, parts, raw, spectra, times};
+use crate::dataset::{Document, Measurement, Place, Role};
+use crate::quantity::Geometry;
 
 /// Assembles the document of a plan.
 ///
@@ -30,7 +23,7 @@ pub(super) fn assemble(mut plan: Plan, options: &Options, notes: &mut Notes) -> 
     check_scan(&plan, notes)?;
     note_times(&plan, notes);
     let mut document = parts::document(&plan.settings);
-    for (light, entry) in lights(&plan, notes) {
+    for (light, entry) in raw::lights(&plan, notes) {
         if document.lights.iter().any(|known| known.id == light.id) {
             let text =
                 format!("{}: a second spectrum of the light `{}`; the first is kept", entry.record.label(), light.id);
@@ -39,12 +32,12 @@ pub(super) fn assemble(mut plan: Plan, options: &Options, notes: &mut Notes) -> 
             document.lights.push(light);
         }
     }
-    let noise = noise(&plan, notes);
-    let mut measurements = raw_measurements(&plan, noise.as_ref());
+    let noise = raw::noise(&plan, notes);
+    let mut measurements = raw::measurements(&plan, noise.as_ref());
     if plan.of(Role::White).next().is_some() && plan.of(Role::Sample).next().is_some() {
         let (reference, derived) = factor::derive(&plan, &measurements, noise.as_ref(), options, notes)?;
-        for raw in measurements.iter_mut().filter(|raw| raw.role == Role::White) {
-            raw.white_reference = Some(reference.id.clone());
+        for white in measurements.iter_mut().filter(|raw| raw.role == Role::White) {
+            white.white_reference = Some(reference.id.clone());
         }
         document.white_references.push(reference);
         measurements.push(derived);
@@ -62,7 +55,7 @@ fn attach(document: &mut Document, measurements: Vec<Measurement>, plan: &Plan, 
             parts::attach_sample(document, &mut measurement, &plan.settings, notes);
         }
         parts::attach_instrument(document, &mut measurement, details, &plan.settings, notes);
-        parts::attach_lights(document, &measurement);
+        parts::attach_lights(document, &measurement, &plan.settings);
         parts::list_unfilled(&measurement, notes);
         document.measurements.push(measurement);
     }
@@ -87,11 +80,6 @@ fn require_data(plan: &Plan) -> Result<(), ImportError> {
         ))),
         _ => Ok(()),
     }
-}
-
-/// The first record with data among entries.
-fn first_record<'a>(mut entries: impl Iterator<Item = &'a Entry>) -> Option<&'a Record> {
-    entries.find(|entry| entry.record.rejection.is_none()).map(|entry| &entry.record)
 }
 
 /// Samples, whites and darks share one axis and one quantity; a lamp may have its own.
@@ -128,13 +116,9 @@ fn range(record: &Record) -> String {
 }
 
 fn note_floor(plan: &mut Plan, notes: &mut Notes) {
-    // Lamps have an axis and a range of their own.
-    let (lamps, mut measured): (Vec<Entry>, Vec<Entry>) =
-        std::mem::take(&mut plan.entries).into_iter().partition(|entry| entry.role == Role::Lamp);
-    let found = floor::flag_floor(&mut measured);
-    let instrument = measured.iter().any(|entry| entry.record.is_pr650_like());
-    plan.entries = measured;
-    plan.entries.extend(lamps);
+    let found = floor::flag_floor(&mut plan.entries);
+    let mut measured = plan.entries.iter().filter(|entry| entry.role != Role::Lamp);
+    let instrument = measured.any(|entry| entry.record.is_pr650_like());
     if !instrument {
         return;
     }
@@ -204,189 +188,6 @@ fn note_times(plan: &Plan, notes: &mut Notes) {
     if !unplaced.is_empty() {
         let text = format!("times without a zone are not filled (state `time-zone`): {}", listed(&unplaced));
         notes.notice(plan.place.clone(), text);
-    }
-}
-
-fn lights<'a>(plan: &'a Plan, notes: &mut Notes) -> Vec<(Light, &'a Entry)> {
-    let mut lights = Vec::new();
-    for entry in plan.of(Role::Lamp) {
-        let record = &entry.record;
-        let name = entry.light.as_deref().or(record.title.as_deref()).unwrap_or("lamp");
-        let axis = WavelengthAxis::new(record.nm.clone(), parts::bandpass(&plan.settings, record.details.bandpass_nm));
-        let spectrum = axis.ok().filter(|_| record.rejection.is_none()).map(|axis| LightSpectrum {
-            quantity: quantity(record, &plan.settings),
-            axis,
-            values: record.values.clone(),
-            flags: record.flags.iter().map(|flags| flags.0).collect(),
-        });
-        let id = Id::from_title(name);
-        if let Some(spectrum) = &spectrum {
-            for field in spectrum.quantity.unstated_fields() {
-                notes.unfilled(format!("lights/{id}/spectrum/quantity/{field}"));
-            }
-        }
-        lights.push((Light { id, title: Some(name.to_owned()), spectrum }, entry));
-    }
-    lights
-}
-
-/// What the numbers of a record are.
-pub(super) fn quantity(record: &Record, settings: &Settings) -> Quantity {
-    if record.dialect == "columns" || record.kind == QuantityKind::Unstated {
-        return Quantity {
-            kind: record.kind,
-            ..Settings { quantity: Some(record.kind), ..settings.clone() }.quantity()
-        };
-    }
-    // An instrument sees all the light that comes: a total.
-    Quantity::absolute(record.kind, settings.part.unwrap_or(Part::Total))
-}
-
-/// The noise model, for radiances of the PR-6xx family.
-fn noise(plan: &Plan, notes: &mut Notes) -> Option<Noise> {
-    let measured: Vec<Entry> = plan.entries.iter().filter(|entry| entry.role != Role::Lamp).cloned().collect();
-    let record = first_record(measured.iter())?;
-    let ratio_asked = measured.iter().any(|entry| entry.role == Role::White) && record.kind == QuantityKind::Unstated;
-    if !record.is_pr650_like() || !(record.kind == QuantityKind::SpectralRadiance || ratio_asked) {
-        return None;
-    }
-    notes.assume(plan.place.clone(), Noise::describe());
-    Some(Noise::of(&measured))
-}
-
-/// The raw measurements: one per role in a scan or where there is a reference, else one per file.
-fn raw_measurements(plan: &Plan, noise: Option<&Noise>) -> Vec<Measurement> {
-    let mut raw = Vec::new();
-    let together = plan.scan || plan.of(Role::White).next().is_some();
-    for (role, id) in [(Role::Sample, ""), (Role::White, "white"), (Role::Dark, "dark")] {
-        let entries: Vec<(usize, &Entry)> =
-            plan.entries.iter().enumerate().filter(|(_, entry)| entry.role == role).collect();
-        if entries.is_empty() {
-            continue;
-        }
-        if together || role != Role::Sample {
-            let id = if role == Role::Sample { sample_id(&entries) } else { id };
-            raw.extend(measurement(plan, Id::from_title(id), role, &entries, noise));
-        } else {
-            for (id, entries) in by_file(&entries) {
-                raw.extend(measurement(plan, id, role, &entries, noise));
-            }
-        }
-    }
-    raw
-}
-
-fn sample_id(entries: &[(usize, &Entry)]) -> &'static str {
-    match first_record(entries.iter().map(|(_, entry)| *entry)).map(|record| record.kind) {
-        Some(QuantityKind::SpectralRadiance) => "radiance",
-        Some(QuantityKind::SpectralIrradiance) => "irradiance",
-        _ => "spectra",
-    }
-}
-
-/// Records of one file and name, with their positions in the plan.
-type Named<'a> = (&'a str, Option<&'a str>, Vec<(usize, &'a Entry)>);
-
-/// Groups of records: those of one file together, records with a name of their own apart. Ids from the names.
-fn by_file<'a>(entries: &[(usize, &'a Entry)]) -> Vec<(Id, Vec<(usize, &'a Entry)>)> {
-    let mut groups: Vec<Named<'_>> = Vec::new();
-    for (index, entry) in entries {
-        let (file, title) = (entry.record.file.as_str(), entry.record.title.as_deref());
-        match groups.iter_mut().find(|(known, name, _)| (*known, *name) == (file, title)) {
-            Some((_, _, group)) => group.push((*index, *entry)),
-            None => groups.push((file, title, vec![(*index, *entry)])),
-        }
-    }
-    let mut taken = std::collections::BTreeSet::new();
-    let unique = |file: &str, title: Option<&str>| {
-        let stem =
-            std::path::Path::new(file).file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into());
-        let base = title.map_or_else(|| Id::from_title(&stem), Id::from_title);
-        let mut id = base.clone();
-        for number in 2_u32.. {
-            if taken.insert(id.clone()) {
-                break;
-            }
-            let short: String = base.as_str().chars().take(52).collect();
-            id = Id::from_title(&format!("{short}-{number}"));
-        }
-        id
-    };
-    let mut unique = unique;
-    groups.into_iter().map(|(file, title, group)| (unique(file, title), group)).collect()
-}
-
-/// The raw measurement of some entries; `None` where none of them holds data and so no axis is known.
-fn measurement(
-    plan: &Plan,
-    id: Id,
-    role: Role,
-    entries: &[(usize, &Entry)],
-    noise: Option<&Noise>,
-) -> Option<Measurement> {
-    let all = plan.entries.iter().filter(|entry| entry.role != Role::Lamp);
-    let record = first_record(entries.iter().map(|(_, entry)| *entry)).or_else(|| first_record(all))?;
-    let axis =
-        WavelengthAxis::new(record.nm.clone(), parts::bandpass(&plan.settings, record.details.bandpass_nm)).ok()?;
-    let shape = (entries.len(), axis.nm.len());
-    let mut values = Array2::from_elem(shape, f64::NAN);
-    let mut flags = Array2::from_elem(shape, 0_u16);
-    let mut sigma = Array2::from_elem(shape, f64::NAN);
-    for (row, (_, entry)) in entries.iter().enumerate() {
-        let rejected = entry.record.rejection.as_ref().map(|(flag, _)| *flag);
-        for column in 0..shape.1 {
-            let at = (row, column);
-            if let Some(flag) = rejected {
-                flags[at] = flag.bit();
-                continue;
-            }
-            let mask = entry.record.flags.get(column).copied().unwrap_or(Flags::NONE.with(Flag::NotMeasured));
-            values[at] = entry.record.values.get(column).copied().unwrap_or(f64::NAN);
-            flags[at] = mask.0;
-            let step = entry.record.steps.get(column).copied().unwrap_or(0.0);
-            sigma[at] = noise.map_or(f64::NAN, |noise| noise.sigma(values[at], step, mask, column));
-        }
-    }
-    let components = noise.map(|_| record_scale(RECORD_SCALE)).into_iter().collect();
-    Some(Measurement {
-        id,
-        title: record.title.clone().filter(|_| !plan.scan).or_else(|| plan.settings.title.clone()),
-        quantity: quantity(record, &plan.settings),
-        role,
-        sample: None,
-        instrument: None,
-        white_reference: None,
-        emission: EmissionAxis::Wavelengths(axis),
-        excitations: plan.excitations.list.clone(),
-        acquisitions: entries.iter().map(|(order, entry)| acquisition(plan, *order, entry)).collect(),
-        values,
-        flags,
-        uncertainty: Uncertainty { standard: noise.map(|_| sigma), components },
-        derivation: None,
-    })
-}
-
-/// The scale error of a record, shared by its wavelengths.
-pub(super) fn record_scale(relative: f64) -> Component {
-    Component {
-        name: "record scale".to_owned(),
-        relative: vec![relative],
-        correlated_over: CorrelatedOver::Wavelengths,
-    }
-}
-
-fn acquisition(plan: &Plan, order: usize, entry: &Entry) -> Acquisition {
-    let details = &entry.record.details;
-    let zone = plan.settings.time_zone.as_deref();
-    let printed = || details.local_time.as_deref().and_then(|text| times::rfc3339(text, zone));
-    Acquisition {
-        geometry: entry.geometry,
-        excitation: entry.excitation,
-        order: u32::try_from(order).unwrap_or(u32::MAX),
-        repeats: 1,
-        time: entry.time.clone().or_else(printed),
-        exposure_ms: entry.exposure_ms.or(details.exposure_ms),
-        quality_code: entry.record.quality,
     }
 }
 

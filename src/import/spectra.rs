@@ -4,9 +4,12 @@ use super::error::ImportError;
 use super::receipt::{LISTED, Notes};
 use super::record::Record;
 use super::source::Source;
-use super::{Format, Options, columns, pr650, spectrawin};
+use super::{Format, Options, columns, pr650, pr650_line, spectrawin};
 use crate::dataset::Place;
 use crate::quantity::QuantityKind;
+
+/// A header with `value` and one of these is that of a table CSV.
+const TABLE_COLUMNS: &[&str] = &["theta_i_deg", "theta_i", "emission_nm", "excitation_nm"];
 
 /// What format a text is in, by its content.
 pub(super) fn sniff(source: &Source) -> Format {
@@ -17,11 +20,11 @@ pub(super) fn sniff(source: &Source) -> Format {
         Format::ManifestToml
     } else if columns.contains(&"file") && columns.contains(&"role") || columns.first() == Some(&"file") {
         Format::Manifest
-    } else if columns.contains(&"value") && (columns.len() > 2 || columns.contains(&"emission_nm")) {
+    } else if columns.contains(&"value") && TABLE_COLUMNS.iter().any(|column| columns.contains(column)) {
         Format::TableCsv
     } else if spectrawin::is_full(source) {
         Format::SpectraWin
-    } else if source.text.lines().take(20).any(|line| pr650::starts_capture(line.text)) {
+    } else if source.text.lines().take(20).any(|line| pr650_line::starts_capture(line.text)) {
         Format::Pr650
     } else if spectrawin::is_spectral_only(source) {
         Format::SpectraWin

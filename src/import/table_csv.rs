@@ -114,7 +114,7 @@ fn finish(mut measurement: Measurement, settings: &Settings, notes: &mut Notes) 
     let mut document = parts::document(settings);
     parts::attach_sample(&mut document, &mut measurement, settings, notes);
     parts::attach_instrument(&mut document, &mut measurement, None, settings, notes);
-    parts::attach_lights(&mut document, &measurement);
+    parts::attach_lights(&mut document, &measurement, settings);
     parts::list_unfilled(&measurement, notes);
     document.measurements.push(measurement);
     document
@@ -179,7 +179,7 @@ impl Table {
         self.stated_order |= order.is_some();
         let mut acquisition = Acquisition::at(geometry, order.unwrap_or(position));
         acquisition.excitation = excitation;
-        acquisition.time = row.text("time").map(str::to_owned);
+        acquisition.time = row.time(settings.time_zone.as_deref())?;
         acquisition.exposure_ms = row.positive("exposure_ms")?;
         self.acquisitions.push(acquisition);
         self.index.insert(key, next);
