@@ -23,7 +23,7 @@ struct Arguments {
 
 #[derive(Debug, Subcommand)]
 enum Command {
-    Import(command::import::Arguments),
+    Import(Box<command::import::Arguments>),
     Fit(command::fit::Arguments),
     Eval(command::eval::Arguments),
     Report(command::report::Arguments),
