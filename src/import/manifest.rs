@@ -60,7 +60,6 @@ pub(super) fn plan(source: &Source, path: &Path, options: &Options, notes: &mut 
     }
     let mut input = source.input.clone();
     input.dialect = if toml { "manifest-toml" } else { "manifest-csv" }.to_owned();
-    input.records = rows.len() as u64;
     notes.input(input);
     let settings = options.settings.clone().or(&stated);
     let folder = path.parent().unwrap_or(Path::new("")).to_path_buf();

@@ -138,11 +138,6 @@ impl Rows {
         self.rows.iter().map(|(line, fields)| Row { table: self, line: *line, fields })
     }
 
-    /// Number of rows.
-    pub(crate) fn len(&self) -> usize {
-        self.rows.len()
-    }
-
     /// True where the table has the column.
     pub(crate) fn has(&self, column: &str) -> bool {
         self.columns.iter().any(|name| name == column)
