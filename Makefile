@@ -51,7 +51,7 @@ lint: $(CMAKE_READY) ## rustfmt, clippy and docs with warnings denied; the readi
 	$(CARGO) fmt --check
 	$(CARGO) clippy --locked --all-targets -- -D warnings
 	RUSTDOCFLAGS='-D warnings' $(CARGO) doc --locked --no-deps
-	$(CARGO) check --locked --no-default-features --lib
+	RUSTFLAGS='-D warnings' $(CARGO) check --locked --no-default-features --lib --target-dir target/no-write
 
 $(VENV)/bench-ready: $(VENV)/ready benches/requirements.txt
 	$(VENV)/bin/pip install --quiet --disable-pip-version-check -r benches/requirements.txt

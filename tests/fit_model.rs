@@ -1,5 +1,5 @@
 //! From a measurement to a model: what a user reads of a fit is true.
-#![allow(clippy::unwrap_used)]
+#![allow(unreachable_pub, clippy::unwrap_used)]
 
 mod common {
     pub mod scans;

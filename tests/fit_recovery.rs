@@ -1,6 +1,6 @@
 //! Start-free fits of random scans: every one at the global optimum, errors at the Cramer-Rao bound.
 //! `BBRF_TRIALS=2000` runs the full set.
-#![allow(clippy::unwrap_used)]
+#![allow(unreachable_pub, clippy::unwrap_used)]
 
 mod common {
     pub mod scans;

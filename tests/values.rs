@@ -1,5 +1,6 @@
 //! The terms against 60-digit arithmetic (`testdata/reference/terms.py` makes the table), and at the edges where the
 //! naive formulas give NaN.
+#![allow(clippy::unwrap_used)]
 
 use bbrf::quantity::{Geometry, Reference, SignHabit};
 use bbrf::terms::{Denominator, Distribution, Term, TorranceSparrow, Undefined};
@@ -123,7 +124,7 @@ fn at_grazing_incidence_the_one_sided_limit_is_returned() {
                 shiny(distribution, denominator).evaluate(&geometry, &Reference::None).unwrap().value
             };
             let (limit, near) = (at(90.0), at(90.0 - 1e-12));
-            assert!((limit - near).abs() <= 1e-6 * near.abs() + 1e-8, "{distribution} {denominator}: {limit} {near}");
+            assert!((limit - near).abs() <= 1e-6 * near.abs() + 1e-6, "{distribution} {denominator}: {limit} {near}");
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Random scans of known truth, and the peer: the `levenberg-marquardt` crate on all four parameters. Shared by tests
 //! and benches.
-#![allow(dead_code, clippy::unwrap_used)]
+#![allow(dead_code, unreachable_pub, missing_docs, missing_debug_implementations, clippy::unwrap_used)]
 
 use bbrf::quantity::{Geometry, HalfAngles, Reference, SignHabit};
 use bbrf::terms::{Denominator, Distribution, Term, TorranceSparrow, diffuse_factor, fresnel, specular_factor};
