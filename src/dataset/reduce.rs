@@ -10,10 +10,10 @@ use std::str::FromStr;
 use ndarray::Array2;
 
 use super::{Document, Measurement};
-use crate::quantity::{Band, CorrelatedOver, EmissionAxis, Flag, Flags, Geometry, QuantityKind, Reference};
+use crate::quantity::{
+    Band, CorrelatedOver, EmissionAxis, Flag, Flags, Geometry, QuantityKind, Reference, luminous_efficacy,
+};
 
-/// Luminous efficacy of radiation at 555 nm, lm/W.
-const LUMINOUS_EFFICACY: f64 = 683.002;
 /// The default band holds the wavelengths whose mean signal exceeds this share of its peak.
 const BAND_SHARE_OF_PEAK: f64 = 0.1;
 /// A wavelength that is unusable in some rows is left out of both sums for all rows if it carries at most this share
@@ -267,7 +267,7 @@ impl<'a> WeightedSum<'a> {
         let base = base_weights(document, measurement, nm, ratio, &mut notes);
         let alive: Vec<usize> = (0..nm.len()).filter(|&column| is_alive(measurement, &base, column)).collect();
         let luminance = reduction == Reduction::Luminance;
-        let response = |column: usize| if luminance { efficiency(nm[column]) } else { 1.0 };
+        let response = |column: usize| if luminance { luminous_efficacy(nm[column]) } else { 1.0 };
         let band = match reduction {
             Reduction::Band(band) => Some(band),
             Reduction::Luminance => Some(Band { from_nm: f64::MIN_POSITIVE, to_nm: f64::MAX }),
@@ -387,16 +387,6 @@ fn reduced_kind(kind: QuantityKind, luminance: bool) -> QuantityKind {
         (false, false) if kind == QuantityKind::SpectralRadiance => QuantityKind::BandRadiance,
         (false, _) => kind,
     }
-}
-
-/// V(lambda) times 683 lm/W, by linear interpolation between the whole nanometres of the CIE table; 0 outside.
-fn efficiency(nm: f64) -> f64 {
-    use colorimetry::observer::Observer;
-    let at = |whole: f64| Observer::Cie1931.xyz_at_wavelength(whole as usize).map_or(0.0, |xyz| xyz.y());
-    let lower = nm.floor();
-    let fraction = nm - lower;
-    let peak = at(555.0);
-    LUMINOUS_EFFICACY * (at(lower) * (1.0 - fraction) + at(lower + 1.0) * fraction) / peak
 }
 
 /// The weight of each value \[row, wavelength\]: p of the perfect diffuser for a factor, the step for a radiance.

@@ -7,7 +7,7 @@ use super::Options;
 use super::certificate;
 use super::error::ImportError;
 use super::mean::{Mean, Spread};
-use super::noise::{Noise, RECORD_SCALE};
+use super::noise::{Noise, RECORD_SCALE, kept};
 use super::plan::{Plan, geometry_key};
 use super::raw::record_scale;
 use super::receipt::Notes;
@@ -121,6 +121,7 @@ impl<'a> Division<'a> {
         if groups.own_reference() {
             fold_in(&mut sigma, &values, &relative);
         }
+        sigma.mapv_inplace(kept);
         let title = plan.settings.title.clone();
         Measurement {
             id: plan.settings.id.as_deref().map_or_else(|| Id::from_title("scan"), Id::from_title),

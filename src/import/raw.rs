@@ -3,7 +3,7 @@
 use ndarray::Array2;
 
 use super::keys::Settings;
-use super::noise::{Noise, RECORD_SCALE};
+use super::noise::{Noise, RECORD_SCALE, kept};
 use super::parts;
 use super::plan::{Entry, Plan, first_record};
 use super::receipt::Notes;
@@ -152,7 +152,7 @@ fn measurement(
             values[at] = entry.record.values.get(column).copied().unwrap_or(f64::NAN);
             flags[at] = mask.0;
             let step = entry.record.steps.get(column).copied().unwrap_or(0.0);
-            sigma[at] = noise.map_or(f64::NAN, |noise| noise.sigma(values[at], step, mask, column));
+            sigma[at] = noise.map_or(f64::NAN, |noise| kept(noise.sigma(values[at], step, mask, column)));
         }
     }
     let components = noise.map(|_| record_scale(RECORD_SCALE)).into_iter().collect();

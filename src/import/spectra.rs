@@ -6,7 +6,7 @@ use super::record::Record;
 use super::source::Source;
 use super::{Format, Options, columns, pr650, pr650_line, spectrawin};
 use crate::dataset::Place;
-use crate::quantity::QuantityKind;
+use crate::quantity::{QuantityKind, luminous_efficacy};
 
 /// A header with `value` and one of these is that of a table CSV.
 const TABLE_COLUMNS: &[&str] = &["theta_i_deg", "theta_i", "emission_nm", "excitation_nm"];
@@ -89,10 +89,10 @@ fn fill(record: &mut Record, options: &Options) {
 
 fn note_state(record: &Record, notes: &mut Notes) {
     if let Some((_, why)) = &record.rejection {
-        let text = format!("{}: rejected, {why}; its values are missing", record.label());
+        let text = format!("rejected, {why}; its values are missing");
         notes.notice(record.place(), text);
     } else if let Some(code) = record.quality.filter(|code| *code != 0 && *code != 14) {
-        let text = format!("{}: quality code {code}; the values are kept with a flag", record.label());
+        let text = format!("quality code {code}; the values are kept with a flag");
         notes.notice(record.place(), text);
     }
     for doubt in &record.doubts {
@@ -149,19 +149,13 @@ fn note_luminance(record: &Record, notes: &mut Notes) {
 /// cd m-2 in one footlambert: 1/pi cd per square foot.
 const CD_PER_FOOTLAMBERT: f64 = 3.426_259_1;
 
-/// The approximation of V(lambda) below is good to 1 % in white and 6 % in blue light; units are off by 4 or more.
-const LUMINANCE_TOLERANCE: f64 = 0.15;
+/// The instrument's own weighting departs by a few per cent in blue light; units are off by 4 or more.
+const LUMINANCE_TOLERANCE: f64 = 0.05;
 
-/// Luminance of a radiance spectrum, cd m-2, with the two-lobe approximation of the CIE 1931 y-bar by Wyman, Sloan and
-/// Shirley (Journal of Computer Graphics Techniques 2(2), 2013, equation 4). Only for this check.
+/// Luminance of a radiance spectrum, cd m-2.
 fn luminance(record: &Record) -> f64 {
-    let lobe = |nm: f64, centre: f64, below: f64, above: f64| {
-        let width = if nm < centre { below } else { above };
-        (-0.5 * ((nm - centre) * width).powi(2)).exp()
-    };
-    let weight = |nm: f64| 0.821 * lobe(nm, 568.8, 0.0213, 0.0247) + 0.286 * lobe(nm, 530.9, 0.0613, 0.0322);
     let step = record.nm[1] - record.nm[0];
-    683.0 * step * record.nm.iter().zip(&record.values).map(|(nm, value)| weight(*nm) * value).sum::<f64>()
+    step * record.nm.iter().zip(&record.values).map(|(nm, value)| luminous_efficacy(*nm) * value).sum::<f64>()
 }
 
 /// Notices of one kind, joined when there are many of them.

@@ -11,6 +11,7 @@ mod convert;
 mod direction;
 mod flag;
 mod kind;
+mod photometry;
 mod uncertainty;
 mod wavelength;
 
@@ -20,6 +21,7 @@ pub use direction::{Direction, DirectionError, Geometry, HalfAngles, SignHabit};
 pub use flag::{Flag, Flags};
 pub(crate) use kind::named;
 pub use kind::{Basis, NormalisedAt, Part, Quantity, QuantityKind, Reference, ReferenceLight, UnknownName};
+pub use photometry::luminous_efficacy;
 pub(crate) use uncertainty::rows_plain;
 pub use uncertainty::{Component, CorrelatedOver, Uncertainty};
 pub use wavelength::{Band, Bandpass, BandpassShape, EmissionAxis, WavelengthAxis, WavelengthError};

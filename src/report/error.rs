@@ -81,6 +81,14 @@ pub enum ReportError {
         /// Why.
         source: TermsError,
     },
+    /// The drawing's text could not be turned into outlines.
+    #[error("{figure}: the SVG cannot be written: {reason}")]
+    Svg {
+        /// Which figure.
+        figure: String,
+        /// What the converter says.
+        reason: String,
+    },
     /// The picture could not be encoded.
     #[error("{figure}: the PNG cannot be written: {reason}")]
     Png {

@@ -46,10 +46,19 @@ impl Figure {
         self.svg(SvgBackend::new())
     }
 
-    /// The figure as SVG with its font inside (about 1 MB): the same picture on a machine without fonts.
-    #[must_use]
-    pub fn to_svg_with_font(&self) -> String {
-        self.svg(SvgBackend::new().with_embedded_font(true))
+    /// The figure as SVG with its text as outlines: the same picture on a machine without fonts.
+    ///
+    /// # Errors
+    /// [`ReportError::Svg`] when the drawing cannot be converted.
+    pub fn to_svg_outlined(&self) -> Result<String, ReportError> {
+        let mut options = usvg::Options { font_family: "DejaVu Sans".to_owned(), ..usvg::Options::default() };
+        let fonts = options.fontdb_mut();
+        fonts.load_font_data(dejavu::sans::regular().to_vec());
+        fonts.load_font_data(dejavu::sans::bold().to_vec());
+        let tree = usvg::Tree::from_str(&self.to_svg(), &options)
+            .map_err(|error| ReportError::Svg { figure: self.name.clone(), reason: error.to_string() })?;
+        let short = usvg::WriteOptions { coordinates_precision: 2, ..usvg::WriteOptions::default() };
+        Ok(tree.to_string(&short))
     }
 
     /// The figure as PNG, with two pixels per unit of the SVG. No font of the system is used.

@@ -114,10 +114,14 @@ fn a_png_has_the_right_size_and_a_picture_on_it() {
 }
 
 #[test]
-fn an_svg_for_a_machine_without_fonts_brings_its_own() {
+fn an_svg_for_a_machine_without_fonts_has_its_text_as_outlines() {
     let figure = angle_map(&map(), "Sheet").unwrap();
-    assert!(figure.to_svg_with_font().contains("@font-face"));
-    assert!(!figure.to_svg().contains("@font-face"));
+    let outlined = figure.to_svg_outlined().unwrap();
+    assert!(!outlined.contains("<text") && figure.to_svg().contains("<text"));
+    // The letters of another title are other outlines.
+    let paths = |svg: &str| svg.matches("<path").count();
+    let other = angle_map(&map(), "Fluorescence paper").unwrap().to_svg_outlined().unwrap();
+    assert!(paths(&outlined) > 100 && outlined != other);
 }
 
 #[test]

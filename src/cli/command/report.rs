@@ -20,7 +20,7 @@ pub(crate) struct Arguments {
     /// Write the page here [default: the file's name with .html, unless --figures is given]
     #[arg(short, long)]
     output: Option<PathBuf>,
-    /// Write each figure into this folder, as PNG and as SVG with its font inside
+    /// Write each figure into this folder, as PNG and SVG, drawn without the system's fonts
     #[arg(long, value_name = "DIR")]
     figures: Option<PathBuf>,
     /// Print what was written as JSON
@@ -79,7 +79,8 @@ fn write_figures(folder: &Path, pictures: &Pictures) -> Result<Vec<String>, miet
 
 fn forms(figure: &Figure) -> Result<[(&'static str, Vec<u8>); 2], miette::Report> {
     let png = figure.to_png().map_err(|error| miette!("{error}"))?;
-    Ok([("png", png), ("svg", figure.to_svg_with_font().into_bytes())])
+    let svg = figure.to_svg_outlined().map_err(|error| miette!("{error}"))?;
+    Ok([("png", png), ("svg", svg.into_bytes())])
 }
 
 /// Writes a file whole or not at all.
