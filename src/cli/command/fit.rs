@@ -162,8 +162,8 @@ pub(crate) fn run(arguments: &Arguments) -> CommandResult {
         }
     }
     let converged = models.iter().all(|model| model.converged);
-    if let ([], Some(first)) = (models.as_slice(), (errors.len() == 1).then(|| errors.pop()).flatten()) {
-        return Err(first);
+    if models.is_empty() && errors.len() == 1 {
+        return Err(errors.remove(0));
     }
     if arguments.json {
         print_json("bbrf:fit:1", &FitResult { models })?;

@@ -4,12 +4,13 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use miette::miette;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::super::exit::{CommandResult, Outcome};
 use super::super::output;
 use crate::container;
-use crate::dataset::{Document, Receipt, Role};
+use crate::dataset::{Document, Place, Receipt, Role};
 use crate::import::{Angles, Dialect, Format, Options, Settings, import};
 use crate::quantity::{Geometry, Part, QuantityKind, Reference, ReferenceLight};
 
@@ -105,21 +106,27 @@ struct Statements {
     keys: Vec<String>,
 }
 
-/// What is printed with `--json`.
-#[derive(Debug, Serialize)]
-struct Report<'a> {
+/// What `--json` prints.
+#[derive(Debug, Serialize, JsonSchema)]
+pub(crate) struct ImportResult<'a> {
+    /// The file written.
     file: String,
+    /// What it holds.
     measurements: Vec<Summary<'a>>,
+    /// Ids of its lights.
     lights: Vec<&'a str>,
+    /// What was read, assumed and not found.
     receipts: &'a [Receipt],
 }
 
-#[derive(Debug, Serialize)]
+/// One measurement in a line.
+#[derive(Debug, Serialize, JsonSchema)]
 struct Summary<'a> {
     id: &'a str,
     quantity: QuantityKind,
     role: Role,
     rows: usize,
+    /// Emission values per row.
     wavelengths: usize,
 }
 
@@ -206,8 +213,8 @@ fn summaries(document: &Document) -> Vec<Summary<'_>> {
         .collect()
 }
 
-fn report<'a>(document: &'a Document, path: &Path) -> Report<'a> {
-    Report {
+fn report<'a>(document: &'a Document, path: &Path) -> ImportResult<'a> {
+    ImportResult {
         file: path.display().to_string(),
         measurements: summaries(document),
         lights: document.lights.iter().map(|light| light.id.as_str()).collect(),
@@ -226,10 +233,29 @@ fn text(document: &Document, path: &Path) -> String {
         let records: u64 = receipt.inputs.iter().map(|input| input.records).sum();
         lines.push(format!("read {} files, {records} records", receipt.inputs.len()));
         lines.extend(receipt.assumptions.iter().map(|assumption| format!("assumed: {}", assumption.text)));
-        lines.extend(receipt.notices.iter().map(|notice| format!("note: {}: {}", notice.place, notice.text)));
+        lines.extend(notices(receipt));
         if !receipt.unfilled.is_empty() {
             lines.push(format!("not stated: {}", receipt.unfilled.join(", ")));
         }
     }
     lines.join("\n")
+}
+
+/// One line per kind of notice: what applies in many places is said once, with the first of them.
+fn notices(receipt: &Receipt) -> Vec<String> {
+    let mut kinds: Vec<(&str, Vec<&Place>)> = Vec::new();
+    for notice in &receipt.notices {
+        match kinds.iter_mut().find(|(text, _)| *text == notice.text) {
+            Some((_, places)) => places.push(&notice.place),
+            None => kinds.push((&notice.text, vec![&notice.place])),
+        }
+    }
+    kinds
+        .into_iter()
+        .map(|(text, places)| match places.as_slice() {
+            [first, _, ..] => format!("note: {text} ({} places, the first {first}; all with --json)", places.len()),
+            [one] if **one != Place::default() => format!("note: {one}: {text}"),
+            _ => format!("note: {text}"),
+        })
+        .collect()
 }

@@ -21,7 +21,9 @@ pub(crate) fn all() -> Vec<(&'static str, Schema)> {
     vec![
         ("document", schema_for!(Document)),
         ("eval", schema_for!(super::eval::EvalResult)),
+        ("eval-model", schema_for!(super::eval::ModelJson)),
         ("fit", schema_for!(super::fit::FitResult)),
+        ("import", schema_for!(super::import::ImportResult<'static>)),
         ("info", schema_for!(info::InfoResult)),
         ("report", schema_for!(super::report::ReportResult)),
         ("rules", schema_for!(rules::RulesResult)),
