@@ -26,6 +26,6 @@ pub use measurement::{Acquisition, Derivation, Excitation, Measurement, Role, Sh
 pub use model::{FittedParameter, FittedTerm, Model, Residuals, Separability};
 pub use place::Place;
 pub use provenance::{Assumption, InputFile, Notice, Provenance, Receipt, Step};
-pub use reduce::{ReduceError, Reduced, Reduction, UnknownReduction, reduce, row_flags};
+pub use reduce::{ReduceError, Reduced, Reduction, UnknownReduction, reduce};
 pub use residual::{Prediction, TermsError, predict, residuals};
 pub use sample::{Sample, WhiteReference};
