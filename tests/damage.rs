@@ -5,7 +5,7 @@
 mod documents;
 
 use bbrf::container::{Limits, digest, document_bytes, read_bytes};
-use bbrf::validate::{Severity, validate_bytes};
+use bbrf::validate::{Severity, Status, validate_bytes};
 
 /// A small generator with a fixed seed, so that a failure can be repeated (splitmix64).
 struct Random(u64);
@@ -60,6 +60,28 @@ fn damage_is_reported_or_without_effect() {
             assert!(errors > 0, "seed {seed}: {:?}", opened.mismatched);
         }
     }
+}
+
+/// Also where HDF5 has no checksum and this reader would see nothing, as in the index of chunks.
+#[test]
+fn no_flipped_bit_is_valid() {
+    let (bytes, _) = document_bytes(&documents::small()).unwrap();
+    assert_eq!(validate_bytes(&bytes).status(), Status::Valid);
+    let index = bytes.windows(4).position(|window| window == b"TREE").unwrap();
+    let heap = bytes.windows(4).position(|window| window == b"GCOL").unwrap();
+    let mut random = Random(97);
+    let sampled: Vec<usize> = (0..400).map(|_| random.below(bytes.len())).collect();
+    let unchecked = (index..index + 120).step_by(5).chain((heap..heap + 120).step_by(5));
+    let mut seen_by_bytes = 0;
+    for at in sampled.into_iter().chain(unchecked) {
+        let mut flipped = bytes.clone();
+        flipped[at] ^= 1 << random.below(8);
+        let report = validate_bytes(&flipped);
+        assert_ne!(report.status(), Status::Valid, "a flip at {at} passes: {:?}", report.findings);
+        let errors = report.findings.iter().filter(|finding| finding.severity == Severity::Error);
+        seen_by_bytes += usize::from(errors.map(|finding| finding.alias).eq(["BB0011"]));
+    }
+    assert!(seen_by_bytes > 10, "only {seen_by_bytes} flips were the rule's own");
 }
 
 #[test]

@@ -33,6 +33,15 @@ pub fn document_bytes(document: &Document) -> Result<(Vec<u8>, Digest), WriteErr
     Ok((to_bytes(&tree)?, digest))
 }
 
+/// The bytes that a document read from a file would be written as; `None` where it has no form in the standard. Unlike
+/// [`document_bytes`] it asks nothing of the document, so that a faulty one can be compared with its file.
+#[must_use]
+pub fn rewritten_bytes(document: &Document) -> Option<Vec<u8>> {
+    let mut tree = encode(document).ok()?;
+    sign(&mut tree);
+    to_bytes(&tree).ok()
+}
+
 /// The tree of a consistent document, known to read back as the same document.
 fn encoded(document: &Document) -> Result<Group, EncodeError> {
     document.check()?;

@@ -10,13 +10,15 @@ use crate::dataset::{Document, Measurement};
 pub struct Context<'a> {
     /// What was read.
     pub inspection: &'a Inspection,
+    /// The bytes that it was read from.
+    pub bytes: &'a [u8],
 }
 
 impl<'a> Context<'a> {
     /// A context.
     #[must_use]
-    pub fn new(inspection: &'a Inspection) -> Self {
-        Self { inspection }
+    pub fn new(inspection: &'a Inspection, bytes: &'a [u8]) -> Self {
+        Self { inspection, bytes }
     }
 
     /// The document, if the tree is one.

@@ -22,7 +22,7 @@ pub fn validate_bytes(bytes: &[u8]) -> Report {
         Ok(inspection) => inspection,
         Err(error) => return rules::structure::unreadable(&error),
     };
-    let context = Context::new(&inspection);
+    let context = Context::new(&inspection, bytes);
     let mut findings = Vec::new();
     for rule in RULES {
         let mut found = rule.finder();

@@ -2,7 +2,7 @@
 
 use super::Context;
 use super::finding::{Finder, Severity};
-use super::rules::{digest, flags, geometry, model, quantity, reference, structure, uncertainty, wavelength};
+use super::rules::{bytes, digest, flags, geometry, model, quantity, reference, structure, uncertainty, wavelength};
 
 /// A rule.
 #[derive(Debug)]
@@ -87,6 +87,10 @@ rules! {
     "BB0010" "structure.unknown" Info structure::unknown,
         "Content that the standard does not know is kept but not checked.", "a dataset `temperature`",
         "Nothing, if it is meant to be there.";
+    "BB0011" "structure.bytes" Error bytes::written,
+        "Damage between the values, in what HDF5 finds them by, may be seen by another HDF5 library only.",
+        "one changed bit in the index of the chunks of `value`",
+        "Fetch the file again, or restore it from a copy; writing this document again also mends it.";
 
     "BB0101" "digest.object" Error digest::object,
         "A digest that disagrees means damage or a change by hand.", "one changed bit in `value`",
@@ -94,7 +98,7 @@ rules! {
     "BB0102" "digest.document" Error digest::document,
         "The digest of the document identifies its content.", "a measurement that was taken out",
         "Fetch the file again; if the change is meant, write the file again with its digests.";
-    "BB0103" "digest.missing" Warning digest::missing,
+    "BB0103" "digest.missing" Error digest::missing,
         "Without a digest damage cannot be seen.", "a dataset without `sha256`",
         "Write the file again with its digests.";
 

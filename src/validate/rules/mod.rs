@@ -1,5 +1,6 @@
 //! The checks, by group.
 
+pub(super) mod bytes;
 pub(super) mod digest;
 pub(super) mod flags;
 pub(super) mod geometry;
