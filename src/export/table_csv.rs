@@ -1,9 +1,14 @@
-//! A measurement as a table CSV: `# key: value` lines, then four angles, wavelengths, value, uncertainty, flags.
+//! A measurement as a table CSV: `# key: value` lines, then angles, wavelengths, value, uncertainty and flags, one value
+//! per line. Importing the table gives the same rows; what it cannot hold is listed.
 
+mod head;
+mod lost;
+
+use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::io::Write;
 
-use crate::dataset::{Acquisition, Measurement};
+use crate::dataset::{Acquisition, Document, Measurement};
 use crate::quantity::Flags;
 
 /// Which optional columns a measurement needs.
@@ -11,46 +16,83 @@ struct Columns {
     excitation: bool,
     emission: bool,
     sigma: bool,
+    order: bool,
+    time: bool,
+    exposure: bool,
+    /// The number of each row among those that nothing else tells apart; empty where there are none.
+    repeat: Vec<u32>,
 }
 
-/// Writes a measurement.
+/// Writes a measurement of a document, and returns what the table does not hold, one line each.
 ///
 /// # Errors
 /// What the target reports.
-pub fn write(measurement: &Measurement, target: &mut impl Write) -> std::io::Result<()> {
-    head(measurement, target)?;
-    let columns = Columns {
-        excitation: measurement.acquisitions.iter().any(|row| excitation_nm(measurement, row).is_some()),
-        emission: measurement.emission.wavelengths().is_some(),
-        sigma: measurement.uncertainty.standard.is_some(),
-    };
-    let mut names = vec!["theta_i_deg", "phi_i_deg", "theta_v_deg", "phi_v_deg"];
-    let optional = [(columns.excitation, "excitation_nm"), (columns.emission, "emission_nm")];
-    names.extend(optional.iter().filter(|(used, _)| *used).map(|(_, name)| *name));
-    names.push("value");
-    names.extend(columns.sigma.then_some("sigma"));
-    names.push("flag");
-    writeln!(target, "{}", names.join(","))?;
+pub fn write(document: &Document, measurement: &Measurement, target: &mut impl Write) -> std::io::Result<Vec<String>> {
+    for (name, value) in head::keys(document, measurement) {
+        writeln!(target, "# {name}: {value}")?;
+    }
+    let columns = Columns::of(measurement);
+    writeln!(target, "{}", columns.names().join(","))?;
     for (row, acquisition) in measurement.acquisitions.iter().enumerate() {
         for emission in 0..measurement.emission.len() {
             writeln!(target, "{}", line(measurement, acquisition, &columns, (row, emission)))?;
         }
     }
-    Ok(())
+    Ok(lost::lost(document, measurement))
 }
 
-fn head(measurement: &Measurement, target: &mut impl Write) -> std::io::Result<()> {
-    let quantity = &measurement.quantity;
-    let mut key = |name: &str, value: &str| writeln!(target, "# {name}: {}", value.replace(['\r', '\n'], " "));
-    if let Some(title) = &measurement.title {
-        key("title", title)?;
+impl Columns {
+    fn of(measurement: &Measurement) -> Self {
+        let rows = &measurement.acquisitions;
+        let in_order = (0_u32..).zip(rows).all(|(position, row)| row.order == position);
+        let order = !in_order || !repeats(rows, false).is_empty();
+        Self {
+            excitation: rows.iter().any(|row| excitation_nm(measurement, row).is_some()),
+            emission: measurement.emission.wavelengths().is_some(),
+            sigma: measurement.uncertainty.standard.is_some(),
+            order,
+            time: rows.iter().any(|row| row.time.is_some()),
+            exposure: rows.iter().any(|row| row.exposure_ms.is_some()),
+            repeat: repeats(rows, order),
+        }
     }
-    key("quantity", quantity.kind.name())?;
-    key("part", quantity.part.name())?;
-    key("normalised-at", quantity.normalised_at.name())?;
-    key("basis", quantity.basis.name())?;
-    key("reference", &quantity.reference.to_string())?;
-    key("reference-light", &quantity.reference_light.to_string())
+
+    fn names(&self) -> Vec<&'static str> {
+        let columns = [
+            (true, "theta_i_deg"),
+            (true, "phi_i_deg"),
+            (true, "theta_v_deg"),
+            (true, "phi_v_deg"),
+            (self.excitation, "excitation_nm"),
+            (self.emission, "emission_nm"),
+            (true, "value"),
+            (self.sigma, "sigma"),
+            (true, "flag"),
+            (self.order, "order"),
+            (!self.repeat.is_empty(), "repeat"),
+            (self.time, "time"),
+            (self.exposure, "exposure_ms"),
+        ];
+        columns.iter().filter(|(used, _)| *used).map(|(_, name)| *name).collect()
+    }
+}
+
+/// Numbers the rows of one geometry and excitation (and order, if that has a column); nothing if no two are alike.
+fn repeats(rows: &[Acquisition], order: bool) -> Vec<u32> {
+    let mut counts = BTreeMap::new();
+    let number = |row: &Acquisition| {
+        let angles = angles(row).map(|angles| angles.map(|angle| (angle + 0.0).to_bits()));
+        let count = counts.entry((angles, row.excitation, order.then_some(row.order))).or_insert(0_u32);
+        *count += 1;
+        *count
+    };
+    let numbers: Vec<u32> = rows.iter().map(number).collect();
+    if numbers.iter().any(|number| *number > 1) { numbers } else { Vec::new() }
+}
+
+fn angles(row: &Acquisition) -> Option<[f64; 4]> {
+    let g = row.geometry?;
+    Some([g.incidence.theta_deg(), g.incidence.phi_deg(), g.viewing.theta_deg(), g.viewing.phi_deg()])
 }
 
 fn excitation_nm(measurement: &Measurement, row: &Acquisition) -> Option<f64> {
@@ -59,10 +101,7 @@ fn excitation_nm(measurement: &Measurement, row: &Acquisition) -> Option<f64> {
 }
 
 fn line(measurement: &Measurement, row: &Acquisition, columns: &Columns, at: (usize, usize)) -> String {
-    let angles = row
-        .geometry
-        .map(|g| [g.incidence.theta_deg(), g.incidence.phi_deg(), g.viewing.theta_deg(), g.viewing.phi_deg()]);
-    let mut fields: Vec<String> = match angles {
+    let mut fields: Vec<String> = match angles(row) {
         Some(angles) => angles.map(number).to_vec(),
         None => vec![String::new(); 4],
     };
@@ -77,6 +116,13 @@ fn line(measurement: &Measurement, row: &Acquisition, columns: &Columns, at: (us
         fields.push(standard.get(at).copied().map_or(String::new(), number));
     }
     fields.push(flag_names(measurement.flags_at(at.0, at.1)));
+    let of_row = [
+        columns.order.then(|| row.order.to_string()),
+        columns.repeat.get(at.0).map(u32::to_string),
+        columns.time.then(|| row.time.clone().unwrap_or_default()),
+        columns.exposure.then(|| row.exposure_ms.map_or(String::new(), number)),
+    ];
+    fields.extend(of_row.into_iter().flatten());
     fields.join(",")
 }
 

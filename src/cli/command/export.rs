@@ -36,16 +36,23 @@ enum Format {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> CommandResult {
+    refuse_to_overwrite(arguments)?;
     let document = container::open_verified(&arguments.file).map_err(|error| miette!("{error}"))?;
     let mut bytes = Vec::new();
-    match arguments.to {
-        Format::Csv => table_csv::write(chosen(&document, arguments.measurement.as_deref())?, &mut bytes),
+    let lost = match arguments.to {
+        Format::Csv => {
+            let measurement = chosen(&document, arguments.measurement.as_deref())?;
+            table_csv::write(&document, measurement, &mut bytes).into_diagnostic()?
+        }
         Format::Json => {
             let digest = container::digest(&document).map_err(|error| miette!("{error}"))?;
-            json::write(&document, digest.as_str(), &mut bytes)
+            json::write(&document, digest.as_str(), &mut bytes).into_diagnostic()?;
+            Vec::new()
         }
+    };
+    for what in lost {
+        eprintln!("bbrf: not in the table: {what}");
     }
-    .into_diagnostic()?;
     match &arguments.output {
         Some(path) => container::replace::write_whole(path, |file| file.write_all(&bytes))
             .into_diagnostic()
@@ -54,6 +61,35 @@ pub(crate) fn run(arguments: &Arguments) -> CommandResult {
         None => drop(std::io::stdout().lock().write_all(&bytes)),
     }
     Ok(Outcome::Done)
+}
+
+/// The source is the only copy of what the other format does not hold.
+fn refuse_to_overwrite(arguments: &Arguments) -> Result<(), miette::Report> {
+    let Some(output) = &arguments.output else { return Ok(()) };
+    // Whatever the spelling, also through links; a target that does not exist yet is another file.
+    let same = match (arguments.file.canonicalize(), output.canonicalize()) {
+        (Ok(file), Ok(output)) => file == output || is_one_file(&file, &output),
+        _ => false,
+    };
+    if same {
+        let help = "name another file after --output";
+        return Err(miette!(help = help, "{} would be overwritten by its export", arguments.file.display()));
+    }
+    Ok(())
+}
+
+/// Two names of one file, as a hard link gives.
+#[cfg(unix)]
+fn is_one_file(a: &std::path::Path, b: &std::path::Path) -> bool {
+    use std::os::unix::fs::MetadataExt;
+    let identity = |path: &std::path::Path| path.metadata().ok().map(|metadata| (metadata.dev(), metadata.ino()));
+    identity(a).is_some_and(|a| Some(a) == identity(b))
+}
+
+/// Other systems are compared by name alone.
+#[cfg(not(unix))]
+fn is_one_file(_: &std::path::Path, _: &std::path::Path) -> bool {
+    false
 }
 
 fn chosen<'a>(document: &'a Document, id: Option<&str>) -> Result<&'a Measurement, miette::Report> {
