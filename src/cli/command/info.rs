@@ -6,6 +6,7 @@ use miette::miette;
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use super::validate::counted;
 use crate::cli::exit::{CommandResult, Outcome};
 use crate::cli::output::{print_json, print_text};
 use crate::container::{self, Opened};
@@ -123,7 +124,7 @@ impl InfoResult {
         }
         lines.extend(self.measurements.iter().map(MeasurementInfo::text));
         lines.extend(self.models.iter().map(ModelInfo::text));
-        lines.push(format!("  {} import receipt(s)", self.receipts));
+        lines.push(format!("  {}", counted(self.receipts, "import receipt")));
         lines.extend(self.unknown.iter().map(|path| format!("  not of the standard: {path}")));
         lines.join("\n")
     }
@@ -152,17 +153,17 @@ impl MeasurementInfo {
 
     fn text(&self) -> String {
         let axis = self.emission_nm.map_or("one band".to_owned(), |[first, last]| {
-            format!("{} wavelengths {first} to {last} nm", self.emission_values)
+            format!("{} {first} to {last} nm", counted(self.emission_values, "wavelength"))
         });
         let mut text = format!(
-            "  measurement {} ({}): {} [{}], {}, reference {}; {} acquisitions x {axis}, {} missing, {} uncertainty",
+            "  measurement {} ({}): {} [{}], {}, reference {}; {} x {axis}, {} missing, {} uncertainty",
             self.id,
             self.role,
             self.quantity,
             self.unit,
             self.part,
             self.reference,
-            self.acquisitions,
+            counted(self.acquisitions, "acquisition"),
             self.missing,
             if self.has_uncertainty { "with" } else { "no" }
         );

@@ -18,7 +18,7 @@ pub(crate) struct Arguments {
 /// Every schema by name; the files in `schema/` are these.
 #[must_use]
 pub(crate) fn all() -> Vec<(&'static str, Schema)> {
-    vec![
+    let mut schemas = vec![
         ("document", schema_for!(Document)),
         ("eval", schema_for!(super::eval::EvalResult)),
         ("eval-model", schema_for!(super::eval::ModelJson)),
@@ -28,7 +28,11 @@ pub(crate) fn all() -> Vec<(&'static str, Schema)> {
         ("report", schema_for!(super::report::ReportResult)),
         ("rules", schema_for!(rules::RulesResult)),
         ("validate", schema_for!(validate::ValidateResult)),
-    ]
+    ];
+    for (name, schema) in &mut schemas {
+        schema.insert("$id".to_owned(), format!("bbrf:{name}:1").into());
+    }
+    schemas
 }
 
 pub(crate) fn run(arguments: &Arguments) -> CommandResult {

@@ -1,15 +1,21 @@
 //! `bbrf validate`: check files against the rules.
 
+use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 use miette::miette;
+use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
 use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::cli::exit::{CommandResult, Outcome};
 use crate::cli::output::{print_json, print_text};
+use crate::cli::progress::bar;
 use crate::dataset::Place;
 use crate::validate::{Finding, Report, Severity, Status, rule, validate_bytes};
+
+/// So many places of one finding are named in the text output.
+const MOST_PLACES: usize = 8;
 
 /// Check files; exit status 0 valid, 1 not valid, 2 not readable, the worst of all.
 #[derive(Debug, clap::Args)]
@@ -67,7 +73,15 @@ struct Grading {
 
 pub(crate) fn run(arguments: &Arguments) -> CommandResult {
     let grading = Grading::new(arguments)?;
-    let files: Vec<FileResult> = arguments.files.iter().map(|path| validate(path, &grading)).collect();
+    let bar = bar(arguments.files.len() as u64, "files");
+    let checked = |path: &PathBuf| {
+        let result = validate(path, &grading);
+        bar.inc(1);
+        result
+    };
+    // Results come in the order of the files, whichever is done first.
+    let files: Vec<FileResult> = arguments.files.par_iter().map(checked).collect();
+    bar.finish_and_clear();
     let worst = files.iter().map(|file| file.status).max().unwrap_or(Status::Valid);
     if arguments.json || arguments.output == Form::Json {
         print_json("bbrf:validate:1", &ValidateResult { files })?;
@@ -140,7 +154,7 @@ pub(super) fn unknown_rule(name: &str) -> miette::Report {
 
 impl FileResult {
     fn text(&self) -> String {
-        let mut lines: Vec<String> = self.report.findings.iter().map(finding_text).collect();
+        let mut lines: Vec<String> = folded(&self.report.findings).into_iter().map(finding_text).collect();
         let count = |severity| self.report.findings.iter().filter(|finding| finding.severity == severity).count();
         let verdict = match self.status {
             Status::Valid => "valid",
@@ -148,23 +162,53 @@ impl FileResult {
             Status::Unreadable => "NOT READABLE",
         };
         lines.push(format!(
-            "{}: {verdict} ({} errors, {} warnings, {} notes)",
+            "{}: {verdict} ({}, {}, {})",
             self.file,
-            count(Severity::Error),
-            count(Severity::Warning),
-            count(Severity::Info)
+            counted(count(Severity::Error), "error"),
+            counted(count(Severity::Warning), "warning"),
+            counted(count(Severity::Info), "note")
         ));
         lines.join("\n")
     }
 }
 
-fn finding_text(finding: &Finding) -> String {
+/// A number with its noun.
+pub(super) fn counted(count: usize, noun: &str) -> String {
+    format!("{count} {noun}{}", if count == 1 { "" } else { "s" })
+}
+
+/// Findings that say the same of several places, each once with its places, in the order of the first.
+fn folded(findings: &[Finding]) -> Vec<(&Finding, Vec<String>)> {
+    let mut known = HashMap::new();
+    let mut folded: Vec<(&Finding, Vec<String>)> = Vec::new();
+    for finding in findings {
+        let says = (finding.rule, finding.found.as_str(), finding.expected.as_str());
+        let index = *known.entry(says).or_insert(folded.len());
+        match folded.get_mut(index) {
+            // The name of the file stands with the first place and in the last line.
+            Some((_, places)) => places.push(Place { file: None, ..finding.place.clone() }.to_string()),
+            None => folded.push((finding, vec![finding.place.to_string()])),
+        }
+    }
+    folded
+}
+
+/// Places on one line; the JSON output has all of them.
+fn listed(places: &[String]) -> String {
+    match places {
+        [only] => only.clone(),
+        _ if places.len() <= MOST_PLACES => format!("{} places: {}", places.len(), places.join(", ")),
+        _ => format!("{} places: {}, ...", places.len(), places[..MOST_PLACES].join(", ")),
+    }
+}
+
+fn finding_text((finding, places): (&Finding, Vec<String>)) -> String {
     format!(
         "{} [{} {}] {}\n    found {}; expected {}\n    {}",
         finding.severity.name(),
         finding.alias,
         finding.rule,
-        finding.place,
+        listed(&places),
         finding.found,
         finding.expected,
         finding.advice
