@@ -15,6 +15,7 @@ mod encode;
 mod error;
 pub mod layout;
 mod limits;
+mod links;
 mod open;
 mod read;
 pub mod replace;

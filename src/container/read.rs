@@ -2,6 +2,7 @@
 //!
 //! Anything wrong ends the read: half a tree is no tree.
 
+use std::collections::HashSet;
 use std::sync::Arc;
 
 use hdf5_reader::error::Error;
@@ -9,6 +10,7 @@ use hdf5_reader::{Attribute, Datatype, Hdf5File, OpenOptions, StringSize};
 
 use super::error::ReadError;
 use super::limits::Limits;
+use super::links;
 use super::tree::{Array, Attributes, Data, Dataset, Group};
 use crate::dataset::Place;
 
@@ -23,6 +25,7 @@ pub(super) fn from_bytes(bytes: &[u8], limits: &Limits) -> Result<Group, ReadErr
     let most = usize::try_from(decoded).unwrap_or(usize::MAX);
     let options = OpenOptions::default()
         .with_chunk_cache_bytes(0)
+        .with_external_link_resolver(Arc::new(links::RefuseExternal))
         .with_max_chunk_bytes(most)
         .with_max_read_bytes(most)
         .with_max_object_header_bytes(bytes.len());
@@ -56,6 +59,17 @@ impl Walk<'_> {
         let mut tree =
             Group { attributes: self.attributes(&group.attributes().map_err(failed)?, shown)?, ..Group::default() };
         let (groups, datasets) = group.members().map_err(failed)?;
+        let names: HashSet<&str> =
+            datasets.iter().map(|d| last_name(d.name())).chain(groups.iter().map(|g| last_name(g.name()))).collect();
+        let most = usize::try_from(self.decoded_limit).unwrap_or(usize::MAX);
+        if let Some(link) = links::dangling(group, |name| names.contains(name), most).map_err(failed)? {
+            let path = format!("{path}/{}", link.name);
+            return Err(ReadError::unexpected(
+                &path,
+                "a soft link that leads nowhere",
+                "a link to what is in the file",
+            ));
+        }
         for dataset in &datasets {
             let name = last_name(dataset.name());
             let read = self.dataset(dataset, &format!("{path}/{name}"))?;
