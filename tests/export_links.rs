@@ -11,8 +11,11 @@ use bbrf::container::write_file;
 use bbrf::validate::{Severity, Status, validate_bytes};
 use hdf5_sys::{h5, h5f, h5l, h5p};
 
+/// Name, the other file of an external link, target.
+type Link<'a> = (&'a str, Option<&'a str>, &'a str);
+
 /// Adds links to a file as another program would.
-fn with_links(path: &Path, links: &[(&str, Option<&str>, &str)]) -> Vec<u8> {
+fn with_links(path: &Path, links: &[Link<'_>]) -> Vec<u8> {
     let text = |text: &str| CString::new(text).unwrap();
     let _guard = hdf5_sys::LOCK.lock();
     // SAFETY: the lock is held, the file is open while it is changed, every text ends with NUL.
@@ -42,12 +45,12 @@ fn with_links(path: &Path, links: &[(&str, Option<&str>, &str)]) -> Vec<u8> {
 #[test]
 fn links_out_of_the_file_and_to_nothing_are_errors() {
     let many: Vec<String> = (0..80).map(|number| format!("link{number}")).collect();
-    let dense: Vec<(&str, Option<&str>, &str)> = many
+    let dense: Vec<Link<'_>> = many
         .iter()
         .map(|name| (name.as_str(), None, "/measurement"))
         .chain([("nowhere", None, "/measurement/none")])
         .collect();
-    let cases: [(&[(&str, Option<&str>, &str)], &str); 4] = [
+    let cases: [(&[Link<'_>], &str); 4] = [
         (&[("nowhere", None, "/measurement/none")], "/nowhere"),
         (&[("measurement/scan/nowhere", None, "none")], "/measurement/scan/nowhere"),
         (&[("away", Some("other.h5"), "/data")], "other.h5"),

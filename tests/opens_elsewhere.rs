@@ -13,6 +13,7 @@ use std::process::Command;
 use bbrf::container::{open_verified, read_file, write_file};
 use bbrf::dataset::Measurement;
 use bbrf::quantity::Flag;
+use bbrf::validate::{rule, validate_bytes};
 
 fn expected(scan: &Measurement, title: &str) -> serde_json::Value {
     let number = |value: &f64| if value.is_nan() { serde_json::Value::Null } else { (*value).into() };
@@ -57,6 +58,11 @@ fn h5py_netcdf4_and_xarray_show_what_we_wrote() {
     assert_eq!(copied.computed_digest, digest);
     assert_eq!(copied.mismatched, Vec::<String>::new());
     assert!(documents::same(&copied.document, &document));
+    // Laid out by another library, and with an attribute added: neither is damage.
+    for file in [&copy, &path] {
+        let findings = validate_bytes(&std::fs::read(file).unwrap()).findings;
+        assert!(findings.iter().all(|finding| finding.rule != rule("structure.bytes").unwrap().id), "{findings:?}");
+    }
     let appended = read_file(&path).unwrap();
     assert_eq!(appended.unknown, ["/@history"]);
     assert!(documents::same(&open_verified(&path).unwrap(), &document));

@@ -15,7 +15,9 @@ use sha2::{Digest as _, Sha256};
 
 use super::encode::{encode, encode_measurement};
 use super::error::EncodeError;
-use super::layout::{is_outside_digest, name};
+use super::layout::is_outside_digest;
+#[cfg(feature = "write")]
+use super::layout::name;
 use super::tree::{Array, Group, Object};
 use crate::dataset::{Document, Measurement};
 
