@@ -28,6 +28,7 @@ mod dialect;
 mod error;
 mod factor;
 mod floor;
+mod floor_scale;
 mod gather;
 mod geometry_csv;
 mod keys;

@@ -129,8 +129,10 @@ fn note_floor(plan: &mut Plan, notes: &mut Notes) {
     }
     let text = format!(
         "the instrument's floor is the smallest value of the set where two or more records print it with the same digits \
-         (at most 5e-6 and a thousandth of the largest value, four wavelengths shared by two records): known at {} \
-         wavelengths; {} samples of {} records within 1 % of it are flagged below-detection, their values kept",
+         (at most 5e-6 and a thousandth of the largest value, four wavelengths shared by two records), times a scale of \
+         each record (its exposure lifts it) that four wavelengths agree on, alone or with records of the same scale or \
+         of the same product of scale and exposure: known at {} wavelengths; {} samples of {} records within 1 % of it \
+         are flagged below-detection, their values kept",
         found.wavelengths, found.samples, found.records
     );
     notes.assume(plan.place.clone(), text);
