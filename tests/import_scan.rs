@@ -251,3 +251,46 @@ fn a_reference_that_contradicts_its_geometry_is_refused() {
     let error = fails(folder.write("m.csv", format!("# reference: same-geometry\n{HEAD}{rows}")));
     assert!(error.contains("fixed-geometry(0,45)"), "{error}");
 }
+
+#[test]
+fn names_do_not_depend_on_how_the_path_was_typed() {
+    let folder = Folder::new();
+    folder.write("a.txt", good(1.0));
+    folder.write("w.txt", good(2.0));
+    folder.write("deep/b.txt", good(1.1));
+    let manifest = folder.write("m.csv", format!("{HEAD}a.txt,sample,10,20,\nw.txt,white,10,20,\n"));
+    let other = folder.path().join("deep/../m.csv");
+    assert_eq!(json(&run(manifest)), json(&run(other)));
+    let list = |base: PathBuf| {
+        let white = vec![base.join("w.txt").display().to_string()];
+        let options = Options { white, ..Options::default() };
+        import(&[base.join("a.txt"), base.join("deep/b.txt")], &options).unwrap()
+    };
+    let (one, two) = (list(folder.path()), list(folder.path().join("deep/..")));
+    assert_eq!(json(&one), json(&two));
+    let names: Vec<&str> = one.provenance.receipts[0].inputs.iter().map(|input| input.name.as_str()).collect();
+    assert_eq!(names, ["a.txt", "deep/b.txt", "w.txt"]);
+    assert!(!json(&one).contains(&folder.path().display().to_string()), "{}", json(&one));
+}
+
+fn json(document: &Document) -> String {
+    serde_json::to_string(document).unwrap()
+}
+
+#[test]
+fn statements_that_contradict_each_other_are_said() {
+    let folder = Folder::new();
+    folder.write("a.txt", good(1.0));
+    let rows = "a.txt,sample,0,10,2\n";
+    let error = fails(folder.write("twice.csv", format!("# title: A\n# title: B\n{HEAD}{rows}")));
+    assert!(error.contains("line 2") && error.contains("line 1") && error.contains("`A`"), "{error}");
+    let error = fails(folder.write("kind.csv", format!("# quantity: spectral-irradiance\n{HEAD}{rows}")));
+    assert!(error.contains("a mixed quantity"), "{error}");
+    let titled = folder.write("m.csv", format!("# title: A\n{HEAD}{rows}"));
+    let settings = Settings { title: Some("B".to_owned()), ..Settings::default() };
+    let document = import(&[titled], &Options { settings, ..Options::default() }).unwrap();
+    let assumed = &document.provenance.receipts[0].assumptions;
+    let both = |text: &str| text.contains("`title`") && text.contains("\"A\"") && text.contains("\"B\"");
+    assert!(assumed.iter().any(|assumption| both(&assumption.text)), "{assumed:?}");
+    assert!(notices(&document).contains("repeats are kept as rows"), "{}", notices(&document));
+}

@@ -61,6 +61,7 @@ pub(super) fn plan(source: &Source, path: &Path, options: &Options, notes: &mut 
     let mut input = source.input.clone();
     input.dialect = if toml { "manifest-toml" } else { "manifest-csv" }.to_owned();
     notes.input(input);
+    note_overridden(source, &options.settings, &stated, notes);
     let settings = options.settings.clone().or(&stated);
     let folder = path.parent().unwrap_or(Path::new("")).to_path_buf();
     check_files(source, path, &folder, &rows, notes)?;
@@ -72,6 +73,15 @@ pub(super) fn plan(source: &Source, path: &Path, options: &Options, notes: &mut 
         plan.entries.push(entry);
     }
     Ok(plan)
+}
+
+/// What the call states goes before what the file states: says so where the two differ.
+pub(super) fn note_overridden(source: &Source, call: &Settings, file: &Settings, notes: &mut Notes) {
+    for (key, in_call, in_file) in call.contradicts(file) {
+        let key = key.replace('_', "-");
+        let text = format!("`{key}` is {in_call}, as the call states, and not {in_file}, as the file states");
+        notes.assume(Place::file(source.name.as_str()), text);
+    }
 }
 
 /// The files of a manifest, each read once.

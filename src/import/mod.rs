@@ -35,6 +35,7 @@ mod keys;
 mod manifest;
 mod manifest_toml;
 mod mean;
+mod names;
 mod noise;
 mod number;
 mod particulars;
@@ -148,7 +149,10 @@ pub fn import(inputs: &[PathBuf], options: &Options) -> Result<Document, ImportE
             scan::assemble(gather::plan(several, options, &mut notes)?, options, &mut notes)?
         }
     };
-    document.provenance.receipts.push(notes.finish());
+    let mut receipt = notes.finish();
+    let is_described = receipt.inputs.first().is_some_and(|input| input.dialect.starts_with("manifest"));
+    names::make_relative(&mut receipt, inputs, is_described);
+    document.provenance.receipts.push(receipt);
     document.check()?;
     Ok(document)
 }

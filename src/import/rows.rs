@@ -45,9 +45,10 @@ impl Rows {
     /// # Errors
     /// [`ImportError`] with the line for unknown keys and columns, doubled columns, and rows of another length.
     pub(crate) fn from_csv(source: &Source, settings: &mut Settings, known: &[&str]) -> Result<Self, ImportError> {
+        let mut taken = Vec::new();
         for line in source.text.lines().take_while(|line| line.text.trim_start().starts_with('#')) {
             match key_line(line.text) {
-                Some((key, text)) => settings.take(key, text, source.at_line(line.number))?,
+                Some((key, text)) => settings.take_once(key, text, source.at_line(line.number), &mut taken)?,
                 None => {
                     return Err(ImportError::Call(fault(
                         source.at_line(line.number),

@@ -42,6 +42,7 @@ use ndarray::Array2;
 use super::angles::{Angles, check_habit};
 use super::error::{ImportError, fault, quoted};
 use super::keys::Settings;
+use super::manifest::note_overridden;
 use super::number::value;
 use super::parts;
 use super::receipt::Notes;
@@ -87,6 +88,7 @@ type Key = ([Option<u64>; 4], Option<u64>, Option<u32>, Option<u32>);
 pub(super) fn document(source: &Source, options: &Options, notes: &mut Notes) -> Result<Document, ImportError> {
     let mut settings = Settings::default();
     let rows = Rows::from_csv(source, &mut settings, COLUMNS)?;
+    note_overridden(source, &options.settings, &settings, notes);
     let settings = options.settings.clone().or(&settings);
     if !rows.has("value") {
         return Err(ImportError::Malformed(fault(
