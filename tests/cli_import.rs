@@ -61,3 +61,20 @@ fn an_input_is_never_written_over() {
     assert_eq!(std::fs::read_to_string(&input).unwrap(), good(1.0));
     assert_eq!(std::fs::read_to_string(&manifest).unwrap(), rows);
 }
+
+#[cfg(unix)]
+#[test]
+fn a_pipe_is_read_once() {
+    let folder = Folder::new();
+    let pipe = folder.path().join("pipe");
+    assert!(std::process::Command::new("mkfifo").arg(&pipe).status().unwrap().success());
+    let writer = std::thread::spawn({
+        let pipe = pipe.clone();
+        move || std::fs::write(pipe, good(1.0)).unwrap()
+    });
+    let output = folder.path().join("out.bbrf");
+    let mut call = bbrf();
+    let run = call.arg("import").arg(&pipe).arg("-o").arg(&output).timeout(std::time::Duration::from_secs(20));
+    run.assert().success().stdout(contains("read 1 file, 1 record"));
+    writer.join().unwrap();
+}

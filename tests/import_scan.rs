@@ -294,3 +294,23 @@ fn statements_that_contradict_each_other_are_said() {
     assert!(assumed.iter().any(|assumption| both(&assumption.text)), "{assumed:?}");
     assert!(notices(&document).contains("repeats are kept as rows"), "{}", notices(&document));
 }
+
+#[test]
+fn folders_as_people_keep_them() {
+    let folder = Folder::new();
+    folder.write("raw/a1.txt", good(1.0));
+    folder.write("raw/a2.txt", good(1.1));
+    folder.write("raw/Notes.txt", "the lamp was warm\n");
+    let settings = Settings { angles: Some("signed, mirror-at-equal".parse().unwrap()), ..Settings::default() };
+    let scan_order = Some("theta_i=10; theta_v=10:20:10".to_owned());
+    let options = Options { settings, scan_order, ..Options::default() };
+    let document = import(&[folder.path().join("raw")], &options).unwrap_or_else(|error| panic!("{error}"));
+    assert!(notices(&document).contains("left out: Notes.txt"), "{}", notices(&document));
+    let rows = "raw\\a1.txt,sample,10,20,\n";
+    let manifest = folder.write("m.csv", format!("{HEAD}{rows}"));
+    let error = fails(folder.path());
+    assert!(error.contains("import the manifest in it"), "{error}");
+    assert_eq!(run(manifest).measurements.len(), 1);
+    let error = fails(folder.write("bfc.txt", "BFC-450 Matrix File\n1 2 3\n"));
+    assert!(error.contains("a Labsphere BFC matrix"), "{error}");
+}

@@ -146,7 +146,7 @@ pub fn import(inputs: &[PathBuf], options: &Options) -> Result<Document, ImportE
         [one] if !one.is_dir() => import_one(one, options, &mut notes)?,
         several => {
             refuse_descriptions(several, options)?;
-            scan::assemble(gather::plan(several, options, &mut notes)?, options, &mut notes)?
+            scan::assemble(gather::plan(several, None, options, &mut notes)?, options, &mut notes)?
         }
     };
     let mut receipt = notes.finish();
@@ -165,7 +165,7 @@ fn import_one(path: &Path, options: &Options, notes: &mut Notes) -> Result<Docum
             refuse_file_options(options)?;
             scan::assemble(manifest::plan(&source, path, options, notes)?, options, notes)
         }
-        _ => scan::assemble(gather::plan(&[path.to_path_buf()], options, notes)?, options, notes),
+        _ => scan::assemble(gather::plan(&[path.to_path_buf()], Some(&source), options, notes)?, options, notes),
     }
 }
 
