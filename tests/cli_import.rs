@@ -43,3 +43,38 @@ fn the_receipt_is_printed_as_json() {
     assert_eq!(json["receipts"][0]["inputs"][0]["sha256"].as_str().unwrap().len(), 64);
     assert!(output.is_file());
 }
+
+#[test]
+fn an_input_is_never_written_over() {
+    let folder = Folder::new();
+    let input = folder.write("ok.txt", good(1.0));
+    let run = bbrf().arg("import").arg(&input).arg("-o").arg(&input).assert();
+    run.code(2).stderr(contains("an input file")).stdout("");
+    let rows = "file,role\nok.txt,sample\n";
+    let manifest = folder.write("m.csv", rows);
+    for output in ["ok.txt", "m.csv", "../x/ok.txt"] {
+        let inside = folder.path().join("x");
+        std::fs::create_dir_all(&inside).unwrap();
+        let output = if output.starts_with("..") { inside.join("../ok.txt") } else { folder.path().join(output) };
+        bbrf().arg("import").arg(&manifest).arg("-o").arg(&output).assert().code(2).stderr(contains("an input file"));
+    }
+    assert_eq!(std::fs::read_to_string(&input).unwrap(), good(1.0));
+    assert_eq!(std::fs::read_to_string(&manifest).unwrap(), rows);
+}
+
+#[cfg(unix)]
+#[test]
+fn a_pipe_is_read_once() {
+    let folder = Folder::new();
+    let pipe = folder.path().join("pipe");
+    assert!(std::process::Command::new("mkfifo").arg(&pipe).status().unwrap().success());
+    let writer = std::thread::spawn({
+        let pipe = pipe.clone();
+        move || std::fs::write(pipe, good(1.0)).unwrap()
+    });
+    let output = folder.path().join("out.bbrf");
+    let mut call = bbrf();
+    let run = call.arg("import").arg(&pipe).arg("-o").arg(&output).timeout(std::time::Duration::from_secs(20));
+    run.assert().success().stdout(contains("read 1 file, 1 record"));
+    writer.join().unwrap();
+}

@@ -251,3 +251,66 @@ fn a_reference_that_contradicts_its_geometry_is_refused() {
     let error = fails(folder.write("m.csv", format!("# reference: same-geometry\n{HEAD}{rows}")));
     assert!(error.contains("fixed-geometry(0,45)"), "{error}");
 }
+
+#[test]
+fn names_do_not_depend_on_how_the_path_was_typed() {
+    let folder = Folder::new();
+    folder.write("a.txt", good(1.0));
+    folder.write("w.txt", good(2.0));
+    folder.write("deep/b.txt", good(1.1));
+    let manifest = folder.write("m.csv", format!("{HEAD}a.txt,sample,10,20,\nw.txt,white,10,20,\n"));
+    let other = folder.path().join("deep/../m.csv");
+    assert_eq!(json(&run(manifest)), json(&run(other)));
+    let list = |base: PathBuf| {
+        let white = vec![base.join("w.txt").display().to_string()];
+        let options = Options { white, ..Options::default() };
+        import(&[base.join("a.txt"), base.join("deep/b.txt")], &options).unwrap()
+    };
+    let (one, two) = (list(folder.path()), list(folder.path().join("deep/..")));
+    assert_eq!(json(&one), json(&two));
+    let names: Vec<&str> = one.provenance.receipts[0].inputs.iter().map(|input| input.name.as_str()).collect();
+    assert_eq!(names, ["a.txt", "deep/b.txt", "w.txt"]);
+    assert!(!json(&one).contains(&folder.path().display().to_string()), "{}", json(&one));
+}
+
+fn json(document: &Document) -> String {
+    serde_json::to_string(document).unwrap()
+}
+
+#[test]
+fn statements_that_contradict_each_other_are_said() {
+    let folder = Folder::new();
+    folder.write("a.txt", good(1.0));
+    let rows = "a.txt,sample,0,10,2\n";
+    let error = fails(folder.write("twice.csv", format!("# title: A\n# title: B\n{HEAD}{rows}")));
+    assert!(error.contains("line 2") && error.contains("line 1") && error.contains("`A`"), "{error}");
+    let error = fails(folder.write("kind.csv", format!("# quantity: spectral-irradiance\n{HEAD}{rows}")));
+    assert!(error.contains("a mixed quantity"), "{error}");
+    let titled = folder.write("m.csv", format!("# title: A\n{HEAD}{rows}"));
+    let settings = Settings { title: Some("B".to_owned()), ..Settings::default() };
+    let document = import(&[titled], &Options { settings, ..Options::default() }).unwrap();
+    let assumed = &document.provenance.receipts[0].assumptions;
+    let both = |text: &str| text.contains("`title`") && text.contains("\"A\"") && text.contains("\"B\"");
+    assert!(assumed.iter().any(|assumption| both(&assumption.text)), "{assumed:?}");
+    assert!(notices(&document).contains("repeats are kept as rows"), "{}", notices(&document));
+}
+
+#[test]
+fn folders_as_people_keep_them() {
+    let folder = Folder::new();
+    folder.write("raw/a1.txt", good(1.0));
+    folder.write("raw/a2.txt", good(1.1));
+    folder.write("raw/Notes.txt", "the lamp was warm\n");
+    let settings = Settings { angles: Some("signed, mirror-at-equal".parse().unwrap()), ..Settings::default() };
+    let scan_order = Some("theta_i=10; theta_v=10:20:10".to_owned());
+    let options = Options { settings, scan_order, ..Options::default() };
+    let document = import(&[folder.path().join("raw")], &options).unwrap_or_else(|error| panic!("{error}"));
+    assert!(notices(&document).contains("left out: Notes.txt"), "{}", notices(&document));
+    let rows = "raw\\a1.txt,sample,10,20,\n";
+    let manifest = folder.write("m.csv", format!("{HEAD}{rows}"));
+    let error = fails(folder.path());
+    assert!(error.contains("import the manifest in it"), "{error}");
+    assert_eq!(run(manifest).measurements.len(), 1);
+    let error = fails(folder.write("bfc.txt", "BFC-450 Matrix File\n1 2 3\n"));
+    assert!(error.contains("a Labsphere BFC matrix"), "{error}");
+}

@@ -77,3 +77,17 @@ fn the_order_of_rows_is_that_of_their_column() {
     assert_eq!(scan.values.column(0).to_vec(), [2.0, 3.0, 1.0]);
     assert_eq!(scan.acquisitions.iter().map(|row| row.order).collect::<Vec<_>>(), [0, 1, 2]);
 }
+
+#[test]
+fn tables_of_spreadsheets_are_read() {
+    let plain = "# angles: full\ntheta_i_deg,phi_i_deg,theta_v_deg,phi_v_deg,emission_nm,value,flag\n\
+        10,0,20,0,380.5,1.25,\n10,0,20,0,390,,not-measured\n";
+    let quoted = "# angles: full\n\"theta_i_deg\",\"phi_i_deg\",\"theta_v_deg\",\"phi_v_deg\",\"emission_nm\",\"value\",\"flag\"\n\
+        10,0,20,0,380.5,1.25,\"\"\n10,0,20,0,390,NaN,not-measured\n";
+    let comma = "# angles: full\ntheta_i_deg;phi_i_deg;theta_v_deg;phi_v_deg;emission_nm;value;flag\n\
+        10;0;20;0;380,5;1,25;\n10;0;20;0;390;;not-measured\n";
+    let expected = format!("{:?}", read(plain).unwrap().measurements);
+    for text in [quoted, comma] {
+        assert_eq!(format!("{:?}", read(text).unwrap().measurements), expected);
+    }
+}

@@ -64,7 +64,11 @@ pub(super) fn read(plan: &Plan, sample: &Measurement, notes: &mut Notes) -> Resu
         ImportError::Contradiction(fault(
             Place::file(text.as_str()),
             "a certificate that does not cover the emission axis",
-            format!("wavelengths from {:?} to {:?} nm", axis.first(), axis.last()),
+            format!(
+                "wavelengths from {} to {} nm",
+                axis.first().copied().unwrap_or(f64::NAN),
+                axis.last().copied().unwrap_or(f64::NAN)
+            ),
             "state a certificate over the whole range",
         ))
     })?;

@@ -10,11 +10,11 @@ use super::mean::{Mean, Spread};
 use super::noise::{Noise, RECORD_SCALE, kept};
 use super::plan::{Plan, geometry_key};
 use super::raw::record_scale;
-use super::receipt::Notes;
+use super::receipt::{Notes, listed};
 use super::reference::{self, Groups};
 use crate::dataset::{Acquisition, Derivation, Id, Measurement, Role, WhiteReference};
 use crate::quantity::{
-    Basis, Component, CorrelatedOver, Flag, Flags, NormalisedAt, Part, Quantity, QuantityKind, Uncertainty,
+    Basis, Component, CorrelatedOver, Flag, Flags, NormalisedAt, Quantity, QuantityKind, Uncertainty,
     ratio_to_reference,
 };
 
@@ -43,6 +43,7 @@ pub(super) fn derive(
     let certificate = certificate::read(plan, sample, notes)?;
     let groups = reference::groups(plan, sample, white, options.repeats, notes)?;
     let division = Division::new(sample, white, of(Role::Dark), &groups, noise, notes);
+    division.note_dark(plan, notes);
     let measurement = division.measurement(plan, sample, &groups, &certificate, notes);
     Ok((certificate.reference, measurement))
 }
@@ -82,12 +83,43 @@ impl<'a> Division<'a> {
         let (value, sigma) = (mean.value[column], mean.sigma[column]);
         let dark = self.dark_mean.as_ref().map(|dark| (dark.value[column], dark.sigma[column]));
         match dark {
+            // A dark signal on the floor is an upper bound: between zero and it everything is as likely.
+            Some((floor, _)) if self.dark_is_bound(column) && floor.is_finite() => {
+                (value, sigma.hypot(floor / 3.0_f64.sqrt()))
+            }
             Some((dark, dark_sigma)) if dark.is_finite() => {
                 let dark_sigma = if dark_sigma.is_finite() { dark_sigma } else { 0.0 };
                 (value - dark, sigma.hypot(dark_sigma))
             }
             _ => (value, sigma),
         }
+    }
+
+    /// True where the mean dark signal is itself on the floor.
+    fn dark_is_bound(&self, column: usize) -> bool {
+        self.dark_mean.as_ref().is_some_and(|dark| dark.flags[column].contains(Flag::BelowDetection))
+    }
+
+    /// Says that a dark signal was taken off, and what of it is not known.
+    fn note_dark(&self, plan: &Plan, notes: &mut Notes) {
+        let Some(dark) = &self.dark_mean else { return };
+        let names: Vec<String> = plan.of(Role::Dark).map(|entry| entry.record.label()).collect();
+        let bounds = (0..dark.value.len()).filter(|column| self.dark_is_bound(*column)).count();
+        let mut text = format!(
+            "the mean dark signal of {} is taken off sample and white; at {bounds} of {} wavelengths it lies on the \
+             instrument's floor and is only an upper bound: nothing is taken off there and floor/sqrt(3) is added to the \
+             standard uncertainty; exposure is not taken into account",
+            listed(&names),
+            dark.value.len()
+        );
+        let of = |role: Role| exposures(plan, role);
+        let (darks, lit) = (of(Role::Dark), [of(Role::Sample), of(Role::White)].concat());
+        if let (Some(dark), Some(lit)) = (range(&darks), range(&lit))
+            && dark != lit
+        {
+            text += &format!(" (dark {dark}, sample and white {lit})");
+        }
+        notes.assume(plan.place.clone(), text);
     }
 
     fn measurement(
@@ -221,10 +253,7 @@ impl<'a> Division<'a> {
     fn quantity(&self, plan: &Plan, groups: &Groups, certificate: &certificate::Certificate) -> Quantity {
         Quantity {
             kind: QuantityKind::RadianceFactor,
-            part: plan.settings.part.unwrap_or(match self.sample.quantity.part {
-                Part::Unstated => Part::Total,
-                stated => stated,
-            }),
+            part: plan.settings.part.unwrap_or(self.sample.quantity.part),
             normalised_at: NormalisedAt::Emission,
             basis: Basis::Energy,
             reference: groups.reference,
@@ -283,6 +312,17 @@ struct Cell {
     sigma: f64,
     relative: f64,
     reference_dark: bool,
+}
+
+/// The known exposures of a role, ms.
+fn exposures(plan: &Plan, role: Role) -> Vec<f64> {
+    plan.of(role).filter_map(|entry| entry.exposure_ms.or(entry.record.details.exposure_ms)).collect()
+}
+
+fn range(exposures: &[f64]) -> Option<String> {
+    let (shortest, longest) =
+        (exposures.iter().copied().reduce(f64::min)?, exposures.iter().copied().reduce(f64::max)?);
+    Some(if shortest == longest { format!("{shortest} ms") } else { format!("{shortest} to {longest} ms") })
 }
 
 /// Adds the reference's relative uncertainty to that of each value.

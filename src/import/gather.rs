@@ -12,15 +12,21 @@ use super::receipt::{Notes, listed};
 use super::record::Record;
 use super::scan_order;
 use super::source::Source;
-use super::{Options, scan, spectra};
+use super::{Format, Options, scan, spectra};
 use crate::dataset::{Place, Role};
 use crate::quantity::Geometry;
 
-/// A plan from files and folders of spectra.
+/// A plan from files and folders of spectra. `known` is the only input where it was read already: a pipe gives its
+/// text once.
 ///
 /// # Errors
 /// [`ImportError`] of the parsers, and where names, order and files do not fit together.
-pub(super) fn plan(inputs: &[PathBuf], options: &Options, notes: &mut Notes) -> Result<Plan, ImportError> {
+pub(super) fn plan(
+    inputs: &[PathBuf],
+    known: Option<&Source>,
+    options: &Options,
+    notes: &mut Notes,
+) -> Result<Plan, ImportError> {
     let others = others(options)?;
     let taken: BTreeSet<&PathBuf> = others.iter().map(|(_, path)| path).collect();
     let files: Vec<PathBuf> = files(inputs, options)?.into_iter().filter(|path| !taken.contains(path)).collect();
@@ -31,7 +37,7 @@ pub(super) fn plan(inputs: &[PathBuf], options: &Options, notes: &mut Notes) -> 
         (Some(_), Some(_)) => return Err(call("--pattern with --scan-order", "one of them", "leave one out")),
         (Some(pattern), None) => by_pattern(&mut plan, &Pattern::new(pattern)?, &files, options, notes)?,
         (None, Some(order)) => by_order(&mut plan, order, &files, options, notes)?,
-        (None, None) => as_list(&mut plan, &files, options, notes)?,
+        (None, None) => as_list(&mut plan, &files, known, options, notes)?,
     }
     for (role, path) in &others {
         for record in read(path, options, notes)? {
@@ -86,7 +92,7 @@ fn files(inputs: &[PathBuf], options: &Options) -> Result<Vec<PathBuf>, ImportEr
                 Place::file(input.display().to_string()),
                 "a folder",
                 "a manifest, or a folder with `--pattern` or `--scan-order`",
-                "say how its files are named or ordered, or name the files",
+                advice_for_folder(input),
             )));
         }
         let name = input.display().to_string();
@@ -108,6 +114,24 @@ fn files(inputs: &[PathBuf], options: &Options) -> Result<Vec<PathBuf>, ImportEr
     Ok(files)
 }
 
+/// A folder with one manifest in it is most likely meant by that.
+fn advice_for_folder(folder: &Path) -> String {
+    let entries = std::fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path());
+    let tables = entries.filter(|path| {
+        let extension = path.extension().map(|extension| extension.to_string_lossy().to_ascii_lowercase());
+        path.is_file() && matches!(extension.as_deref(), Some("csv" | "toml"))
+    });
+    let is_manifest = |path: &PathBuf| {
+        let source = Source::read(path, &path.display().to_string());
+        source.is_ok_and(|source| matches!(spectra::sniff(&source), Format::Manifest | Format::ManifestToml))
+    };
+    let manifests: Vec<PathBuf> = tables.filter(is_manifest).take(2).collect();
+    match manifests.as_slice() {
+        [one] => format!("import the manifest in it: {}", one.display()),
+        _ => "say how its files are named or ordered, or name the files".to_owned(),
+    }
+}
+
 fn read(path: &Path, options: &Options, notes: &mut Notes) -> Result<Vec<Record>, ImportError> {
     let source = Source::read(path, &path.display().to_string())?;
     spectra::read(&source, options, notes)
@@ -122,10 +146,20 @@ fn push(plan: &mut Plan, record: Record, role: Role, geometry: Option<Geometry>,
     plan.entries.push(entry);
 }
 
-fn as_list(plan: &mut Plan, files: &[PathBuf], options: &Options, notes: &mut Notes) -> Result<(), ImportError> {
+fn as_list(
+    plan: &mut Plan,
+    files: &[PathBuf],
+    known: Option<&Source>,
+    options: &Options,
+    notes: &mut Notes,
+) -> Result<(), ImportError> {
     let role = options.role.unwrap_or(Role::Sample);
     for path in files {
-        for record in read(path, options, notes)? {
+        let records = match known {
+            Some(source) => spectra::read(source, options, notes)?,
+            None => read(path, options, notes)?,
+        };
+        for record in records {
             push(plan, record, role, options.geometry, None);
         }
     }
@@ -188,8 +222,24 @@ fn by_order(
     };
     let looks = scan_order::looks(order, habit)?;
     let mut records = Vec::new();
+    let (mut others, mut first_error) = (Vec::new(), None);
     for path in files {
-        records.extend(read(path, options, notes)?);
+        match read(path, options, notes) {
+            Ok(found) => records.extend(found),
+            Err(error @ (ImportError::Malformed(_) | ImportError::Ambiguous(_))) => {
+                others.push(path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned()));
+                first_error.get_or_insert(error);
+            }
+            Err(error) => return Err(error),
+        }
+    }
+    // Notes beside the spectra are left out where the spectra are complete without them.
+    if let Some(error) = first_error {
+        if records.len() != looks.len() {
+            return Err(error);
+        }
+        let text = format!("no spectra and left out: {}", listed(&others));
+        notes.notice(plan.place.clone(), text);
     }
     if records.len() != looks.len() {
         return Err(ImportError::Contradiction(fault(

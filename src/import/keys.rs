@@ -108,7 +108,7 @@ pub(crate) enum KeyFault {
 impl Settings {
     /// Takes one key.
     pub(crate) fn set(&mut self, key: &str, text: &str) -> Result<(), KeyFault> {
-        let name = key.trim().to_ascii_lowercase().replace('_', "-");
+        let name = canonical(key);
         let text = text.trim();
         match name.as_str() {
             "quantity" => self.quantity = Some(named(text)?),
@@ -164,6 +164,73 @@ impl Settings {
         })
     }
 
+    /// Takes a key from a file; the same key may come again with the same value only. `taken` holds the keys so far.
+    pub(crate) fn take_once(
+        &mut self,
+        key: &str,
+        text: &str,
+        place: Place,
+        taken: &mut Vec<(String, String, Place)>,
+    ) -> Result<(), ImportError> {
+        let name = canonical(key);
+        let text = text.trim();
+        if let Some((_, before, at)) = taken.iter().find(|(known, before, _)| *known == name && before != text) {
+            return Err(ImportError::Contradiction(fault(
+                place,
+                format!("{} as {} where {at} says {}", quoted(key), quoted(text), quoted(before)),
+                "one value for a key",
+                "take one of the two lines out",
+            )));
+        }
+        self.take(key, text, place.clone())?;
+        taken.push((name, text.to_owned(), place));
+        Ok(())
+    }
+
+    /// The keys that these settings and `other` both state, with different values: key, value here, value there.
+    pub(crate) fn contradicts(&self, other: &Self) -> Vec<(&'static str, String, String)> {
+        let mut found = Vec::new();
+        macro_rules! compare {
+            ($($field:ident),+) => { $(
+                if let (Some(here), Some(there)) = (&self.$field, &other.$field)
+                    && here != there
+                {
+                    found.push((stringify!($field), format!("{here:?}"), format!("{there:?}")));
+                }
+            )+ };
+        }
+        compare!(
+            quantity,
+            part,
+            normalised_at,
+            basis,
+            reference,
+            reference_light,
+            certified_factor,
+            certified_relative_uncertainty,
+            certificate,
+            angles,
+            title,
+            sample,
+            material,
+            mark,
+            license,
+            citation,
+            id,
+            instrument,
+            serial,
+            light,
+            excitation_nm,
+            excitation_fwhm_nm,
+            filter,
+            bandpass_nm,
+            band,
+            time_zone,
+            simulated
+        );
+        found
+    }
+
     /// The quantity that is stated, with `unstated` where it is not.
     pub(crate) fn quantity(&self) -> Quantity {
         let kind = self.quantity.unwrap_or(QuantityKind::Unstated);
@@ -217,6 +284,11 @@ impl Settings {
         );
         merged
     }
+}
+
+/// The spelling of [`KEYS`].
+fn canonical(key: &str) -> String {
+    key.trim().to_ascii_lowercase().replace('_', "-")
 }
 
 /// Radiance in W is energy by its unit; whether a ratio was formed of photons must be stated.

@@ -45,7 +45,7 @@ const COLUMNS: &[&str] = &[
 pub(super) fn plan(source: &Source, path: &Path, options: &Options, notes: &mut Notes) -> Result<Plan, ImportError> {
     let mut stated = Settings::default();
     let toml = options.format.unwrap_or_else(|| spectra::sniff(source)) == Format::ManifestToml;
-    let rows = if toml {
+    let mut rows = if toml {
         super::manifest_toml::rows(source, &mut stated, COLUMNS)?
     } else {
         Rows::from_csv(source, &mut stated, COLUMNS)?
@@ -59,10 +59,21 @@ pub(super) fn plan(source: &Source, path: &Path, options: &Options, notes: &mut 
         )));
     }
     let mut input = source.input.clone();
-    input.dialect = if toml { "manifest-toml" } else { "manifest-csv" }.to_owned();
+    input.dialect = match (toml, rows.semicolons) {
+        (true, _) => "manifest-toml",
+        (false, false) => "manifest-csv",
+        (false, true) => "manifest-csv, semicolons, decimal comma",
+    }
+    .to_owned();
     notes.input(input);
+    note_overridden(source, &options.settings, &stated, notes);
     let settings = options.settings.clone().or(&stated);
     let folder = path.parent().unwrap_or(Path::new("")).to_path_buf();
+    // Paths from another system: tried only where the name as spelled is no file.
+    rows.rewrite("file", |name| {
+        let slashes = name.contains('\\') && !name.contains('\0') && !folder.join(name).is_file();
+        slashes.then(|| name.replace('\\', "/"))
+    });
     check_files(source, path, &folder, &rows, notes)?;
     let options = Options { settings: settings.clone(), format: None, ..options.clone() };
     let mut reader = Files { folder, options, records: BTreeMap::new() };
@@ -72,6 +83,15 @@ pub(super) fn plan(source: &Source, path: &Path, options: &Options, notes: &mut 
         plan.entries.push(entry);
     }
     Ok(plan)
+}
+
+/// What the call states goes before what the file states: says so where the two differ.
+pub(super) fn note_overridden(source: &Source, call: &Settings, file: &Settings, notes: &mut Notes) {
+    for (key, in_call, in_file) in call.contradicts(file) {
+        let key = key.replace('_', "-");
+        let text = format!("`{key}` is {in_call}, as the call states, and not {in_file}, as the file states");
+        notes.assume(Place::file(source.name.as_str()), text);
+    }
 }
 
 /// The files of a manifest, each read once.

@@ -28,12 +28,14 @@ mod dialect;
 mod error;
 mod factor;
 mod floor;
+mod floor_scale;
 mod gather;
 mod geometry_csv;
 mod keys;
 mod manifest;
 mod manifest_toml;
 mod mean;
+mod names;
 mod noise;
 mod number;
 mod particulars;
@@ -144,10 +146,13 @@ pub fn import(inputs: &[PathBuf], options: &Options) -> Result<Document, ImportE
         [one] if !one.is_dir() => import_one(one, options, &mut notes)?,
         several => {
             refuse_descriptions(several, options)?;
-            scan::assemble(gather::plan(several, options, &mut notes)?, options, &mut notes)?
+            scan::assemble(gather::plan(several, None, options, &mut notes)?, options, &mut notes)?
         }
     };
-    document.provenance.receipts.push(notes.finish());
+    let mut receipt = notes.finish();
+    let is_described = receipt.inputs.first().is_some_and(|input| input.dialect.starts_with("manifest"));
+    names::make_relative(&mut receipt, inputs, is_described);
+    document.provenance.receipts.push(receipt);
     document.check()?;
     Ok(document)
 }
@@ -160,7 +165,7 @@ fn import_one(path: &Path, options: &Options, notes: &mut Notes) -> Result<Docum
             refuse_file_options(options)?;
             scan::assemble(manifest::plan(&source, path, options, notes)?, options, notes)
         }
-        _ => scan::assemble(gather::plan(&[path.to_path_buf()], options, notes)?, options, notes),
+        _ => scan::assemble(gather::plan(&[path.to_path_buf()], Some(&source), options, notes)?, options, notes),
     }
 }
 

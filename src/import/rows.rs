@@ -12,6 +12,8 @@ use crate::dataset::Place;
 #[derive(Debug)]
 pub(crate) struct Rows {
     file: String,
+    /// True for fields divided by semicolons, whose numbers may have decimal commas.
+    pub(crate) semicolons: bool,
     columns: Vec<String>,
     rows: Vec<(u64, Vec<String>)>,
 }
@@ -45,9 +47,10 @@ impl Rows {
     /// # Errors
     /// [`ImportError`] with the line for unknown keys and columns, doubled columns, and rows of another length.
     pub(crate) fn from_csv(source: &Source, settings: &mut Settings, known: &[&str]) -> Result<Self, ImportError> {
+        let mut taken = Vec::new();
         for line in source.text.lines().take_while(|line| line.text.trim_start().starts_with('#')) {
             match key_line(line.text) {
-                Some((key, text)) => settings.take(key, text, source.at_line(line.number))?,
+                Some((key, text)) => settings.take_once(key, text, source.at_line(line.number), &mut taken)?,
                 None => {
                     return Err(ImportError::Call(fault(
                         source.at_line(line.number),
@@ -58,7 +61,7 @@ impl Rows {
                 }
             }
         }
-        let Some((first, _)) = header_line(source) else {
+        let Some((first, names)) = header_line(source) else {
             return Err(ImportError::Malformed(fault(
                 source.at_line(1),
                 "no line of column names",
@@ -66,7 +69,9 @@ impl Rows {
                 "add the header",
             )));
         };
+        let semicolons = names.contains(';') && !names.contains(',');
         let mut reader = csv::ReaderBuilder::new()
+            .delimiter(if semicolons { b';' } else { b',' })
             .has_headers(false)
             .flexible(true)
             .trim(csv::Trim::All)
@@ -78,7 +83,7 @@ impl Rows {
                 Ok(false) => break,
                 Ok(true) => {
                     let line = first - 1 + record.position().map_or(1, csv::Position::line);
-                    rows.push((line, record.iter().map(str::to_owned).collect::<Vec<_>>()));
+                    rows.push((line, record.iter().map(|field| decimal_point(field, semicolons)).collect::<Vec<_>>()));
                 }
                 Err(error) => {
                     let line = error.position().map_or(first, |position| first - 1 + position.line());
@@ -87,7 +92,8 @@ impl Rows {
             }
         }
         let (line, header) = rows.remove(0);
-        let table = Self::new(source, line, header, rows, known)?;
+        let mut table = Self::new(source, line, header, rows, known)?;
+        table.semicolons = semicolons;
         table.check_lengths()?;
         Ok(table)
     }
@@ -122,7 +128,17 @@ impl Rows {
         if rows.is_empty() {
             return Err(malformed(source.at_line(header_line), "no rows", "at least one row under the header"));
         }
-        Ok(Self { file: source.name.clone(), columns, rows })
+        Ok(Self { file: source.name.clone(), semicolons: false, columns, rows })
+    }
+
+    /// Rewrites the fields of a column where `new` gives another text.
+    pub(crate) fn rewrite(&mut self, column: &str, new: impl Fn(&str) -> Option<String>) {
+        let Some(index) = self.columns.iter().position(|name| name == column) else { return };
+        for field in self.rows.iter_mut().filter_map(|(_, fields)| fields.get_mut(index)) {
+            if let Some(text) = new(field) {
+                *field = text;
+            }
+        }
     }
 
     fn check_lengths(&self) -> Result<(), ImportError> {
@@ -206,6 +222,12 @@ impl<'a> Row<'a> {
     pub(crate) fn bad(&self, column: &str, found: &str, expected: &str) -> ImportError {
         malformed(self.place(), format!("{} in the column `{column}`", quoted(found)), expected)
     }
+}
+
+/// A field of a table divided by semicolons: a number with a decimal comma gets a point.
+fn decimal_point(field: &str, semicolons: bool) -> String {
+    let is_number = field.chars().all(|c| c.is_ascii_digit() || matches!(c, ',' | '+' | '-' | 'e' | 'E'));
+    if semicolons && is_number && field.matches(',').count() == 1 { field.replace(',', ".") } else { field.to_owned() }
 }
 
 fn malformed(place: Place, found: impl Into<String>, expected: impl Into<String>) -> ImportError {

@@ -7,7 +7,7 @@ use super::receipt::{Notes, listed};
 use super::record::Record;
 use super::{Options, factor, floor, parts, raw, spectra, times};
 use crate::dataset::{Document, Measurement, Place, Role};
-use crate::quantity::Geometry;
+use crate::quantity::{Geometry, QuantityKind};
 
 /// Assembles the document of a plan.
 ///
@@ -43,6 +43,11 @@ pub(super) fn assemble(mut plan: Plan, options: &Options, notes: &mut Notes) -> 
         measurements.push(derived);
     } else if plan.scan && plan.of(Role::Sample).next().is_some() {
         notes.notice(plan.place.clone(), "no white reference: the scan stays radiance, no factor is derived");
+    }
+    let repeated = options.repeats || plan.of(Role::Sample).any(|entry| entry.repeat.is_some_and(|repeat| repeat > 1));
+    if repeated && plan.of(Role::White).next().is_none() {
+        let text = "repeats are kept as rows of their own and not averaged: there is no white reference";
+        notes.notice(plan.place.clone(), text);
     }
     attach(&mut document, measurements, &plan, notes);
     Ok(document)
@@ -86,6 +91,7 @@ fn require_data(plan: &Plan) -> Result<(), ImportError> {
 fn require_one_axis_and_kind(plan: &Plan) -> Result<(), ImportError> {
     let measured = || plan.entries.iter().filter(|entry| entry.role != Role::Lamp && entry.record.rejection.is_none());
     let Some(first) = first_record(measured()) else { return Ok(()) };
+    require_stated_kind(plan, first)?;
     for entry in measured() {
         let record = &entry.record;
         if record.kind != first.kind {
@@ -106,6 +112,22 @@ fn require_one_axis_and_kind(plan: &Plan) -> Result<(), ImportError> {
         }
     }
     Ok(())
+}
+
+/// A stated quantity that the records' unit code contradicts is two truths. A ratio is stated of what is derived.
+fn require_stated_kind(plan: &Plan, first: &Record) -> Result<(), ImportError> {
+    use QuantityKind::{SpectralIrradiance, SpectralRadiance};
+    let Some(stated) = plan.settings.quantity else { return Ok(()) };
+    let is_raw = |kind: QuantityKind| matches!(kind, SpectralRadiance | SpectralIrradiance);
+    if stated == first.kind || !is_raw(stated) || !is_raw(first.kind) {
+        return Ok(());
+    }
+    Err(ImportError::Contradiction(fault(
+        plan.place.clone(),
+        format!("a mixed quantity: {stated} is stated, {} in {}", first.kind, first.label()),
+        "one quantity",
+        "correct the statement; the instrument's unit code says what a record is",
+    )))
 }
 
 fn range(record: &Record) -> String {
@@ -129,8 +151,10 @@ fn note_floor(plan: &mut Plan, notes: &mut Notes) {
     }
     let text = format!(
         "the instrument's floor is the smallest value of the set where two or more records print it with the same digits \
-         (at most 5e-6 and a thousandth of the largest value, four wavelengths shared by two records): known at {} \
-         wavelengths; {} samples of {} records within 1 % of it are flagged below-detection, their values kept",
+         (at most 5e-6 and a thousandth of the largest value, four wavelengths shared by two records), times a scale of \
+         each record (its exposure lifts it) that four wavelengths agree on, alone or with records of the same scale or \
+         of the same product of scale and exposure: known at {} wavelengths; {} samples of {} records within 1 % of it \
+         are flagged below-detection, their values kept",
         found.wavelengths, found.samples, found.records
     );
     notes.assume(plan.place.clone(), text);

@@ -1,6 +1,6 @@
 //! From an input file to its records, whatever its format.
 
-use super::error::ImportError;
+use super::error::{ImportError, fault};
 use super::receipt::{LISTED, Notes};
 use super::record::Record;
 use super::source::Source;
@@ -14,7 +14,7 @@ const TABLE_COLUMNS: &[&str] = &["theta_i_deg", "theta_i", "emission_nm", "excit
 /// What format a text is in, by its content.
 pub(super) fn sniff(source: &Source) -> Format {
     let header = super::rows::header_line(source).map_or("", |(_, text)| text).to_ascii_lowercase();
-    let columns: Vec<&str> = header.split(',').map(str::trim).collect();
+    let columns: Vec<&str> = header.split([',', ';']).map(|name| name.trim().trim_matches('"').trim()).collect();
     let toml = source.name.to_ascii_lowercase().ends_with(".toml") || header.trim() == "[[record]]";
     if toml {
         Format::ManifestToml
@@ -39,6 +39,7 @@ pub(super) fn sniff(source: &Source) -> Format {
 /// [`ImportError`] of the parser.
 pub(super) fn read(source: &Source, options: &Options, notes: &mut Notes) -> Result<Vec<Record>, ImportError> {
     let format = options.format.filter(|format| format.is_spectra()).unwrap_or_else(|| sniff(source));
+    refuse_unread(source)?;
     let mut dialect = None;
     let mut records = match format {
         Format::Pr650 => pr650::parse(source, options)?,
@@ -66,6 +67,29 @@ pub(super) fn read(source: &Source, options: &Options, notes: &mut Notes) -> Res
         note_state(record, notes);
     }
     Ok(records)
+}
+
+/// Formats that are known and not read, so that nobody looks for a fault in the file.
+fn refuse_unread(source: &Source) -> Result<(), ImportError> {
+    let starts = |text: &str| source.text.lines().take(20).any(|line| line.text.trim_start().starts_with(text));
+    let refused = |found: &str, expected: &str, advice: &str| {
+        Err(ImportError::Malformed(fault(source.at_line(1), found, expected, advice)))
+    };
+    if starts("VEC_") || starts("BFC-450 Matrix File") {
+        return refused(
+            "a Labsphere BFC matrix, which this version does not read",
+            "spectra, a table or a manifest",
+            "write it as a table CSV with the columns excitation_nm, emission_nm and value",
+        );
+    }
+    if starts("[HEADER]") && !spectrawin::is_full(source) {
+        return refused(
+            "a SpectraWin export without the section [SPECTRAL]",
+            "a section with the spectrum",
+            "export it again with the spectral data",
+        );
+    }
+    Ok(())
 }
 
 fn note_unread(source: &Source, unread: &[(u64, String)], notes: &mut Notes) {

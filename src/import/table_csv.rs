@@ -42,6 +42,7 @@ use ndarray::Array2;
 use super::angles::{Angles, check_habit};
 use super::error::{ImportError, fault, quoted};
 use super::keys::Settings;
+use super::manifest::note_overridden;
 use super::number::value;
 use super::parts;
 use super::receipt::Notes;
@@ -87,6 +88,7 @@ type Key = ([Option<u64>; 4], Option<u64>, Option<u32>, Option<u32>);
 pub(super) fn document(source: &Source, options: &Options, notes: &mut Notes) -> Result<Document, ImportError> {
     let mut settings = Settings::default();
     let rows = Rows::from_csv(source, &mut settings, COLUMNS)?;
+    note_overridden(source, &options.settings, &settings, notes);
     let settings = options.settings.clone().or(&settings);
     if !rows.has("value") {
         return Err(ImportError::Malformed(fault(
@@ -102,7 +104,7 @@ pub(super) fn document(source: &Source, options: &Options, notes: &mut Notes) ->
     }
     table.put_in_order();
     let mut input = source.input.clone();
-    input.dialect = "table-csv".to_owned();
+    input.dialect = if rows.semicolons { "table-csv, semicolons, decimal comma" } else { "table-csv" }.to_owned();
     input.records = table.acquisitions.len() as u64;
     notes.input(input);
     table.check_angles(source, &settings, notes)?;
@@ -150,6 +152,7 @@ impl Table {
         let flags = flags(row)?;
         let value = match row.text("value") {
             None if flags.explains_absence() => f64::NAN,
+            Some(text) if flags.explains_absence() && is_missing(text) => f64::NAN,
             None => return Err(row.bad("value", "", "a number, or a flag that says why there is none")),
             Some(text) => value(text).ok_or_else(|| row.bad("value", text, "a finite number with a decimal point"))?,
         };
@@ -280,6 +283,11 @@ impl Table {
             derivation: None,
         })
     }
+}
+
+/// How spreadsheets and statistics programs write a missing number.
+fn is_missing(text: &str) -> bool {
+    ["nan", "na", "n/a"].iter().any(|name| text.eq_ignore_ascii_case(name))
 }
 
 fn doubled(source: &Source, line: u64, before: u64) -> ImportError {

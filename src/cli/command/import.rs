@@ -133,7 +133,9 @@ struct Summary<'a> {
 /// Imports, writes the file, prints the receipt.
 pub(crate) fn run(arguments: &Arguments) -> CommandResult {
     let options = options(arguments)?;
+    refuse_overwriting(&arguments.output, arguments.inputs.iter().cloned())?;
     let document = import(&arguments.inputs, &options).map_err(|error| miette!("{error}"))?;
+    refuse_overwriting(&arguments.output, files_read(&document, &arguments.inputs))?;
     save(&document, &arguments.output)?;
     if arguments.json {
         output::print_json("bbrf:import:1", &report(&document, &arguments.output))?;
@@ -141,6 +143,43 @@ pub(crate) fn run(arguments: &Arguments) -> CommandResult {
         output::print_text(&text(&document, &arguments.output));
     }
     Ok(Outcome::Done)
+}
+
+/// An import never writes over what it reads.
+fn refuse_overwriting(output: &Path, read: impl Iterator<Item = PathBuf>) -> Result<(), miette::Report> {
+    let mut read = read.filter(|path| path.is_file());
+    match read.find(|path| is_same_file(path, output)) {
+        None => Ok(()),
+        Some(path) => Err(miette!(
+            "{}: found an input file ({}) as the file to write; expected another name; an import never writes over what it \
+             reads: correct `--output`",
+            output.display(),
+            path.display()
+        )),
+    }
+}
+
+/// The paths that the receipts' names may stand for: from here, or from a folder above an input.
+fn files_read<'a>(document: &'a Document, inputs: &'a [PathBuf]) -> impl Iterator<Item = PathBuf> {
+    let names = document.provenance.receipts.iter().flat_map(|receipt| &receipt.inputs).map(|input| &input.name);
+    let absolute = inputs.iter().filter_map(|input| input.canonicalize().ok());
+    let folders: Vec<PathBuf> =
+        absolute.flat_map(|path| path.ancestors().map(Path::to_path_buf).collect::<Vec<_>>()).collect();
+    names.flat_map(move |name| {
+        let above: Vec<PathBuf> = folders.iter().map(|folder| folder.join(name)).collect();
+        std::iter::once(PathBuf::from(name)).chain(above)
+    })
+}
+
+/// True for two names of one file, links included.
+fn is_same_file(a: &Path, b: &Path) -> bool {
+    let (Ok(a), Ok(b)) = (a.canonicalize(), b.canonicalize()) else { return false };
+    #[cfg(unix)]
+    if let (Ok(a), Ok(b)) = (a.metadata(), b.metadata()) {
+        use std::os::unix::fs::MetadataExt;
+        return (a.dev(), a.ino()) == (b.dev(), b.ino());
+    }
+    a == b
 }
 
 fn save(document: &Document, path: &Path) -> Result<(), miette::Report> {
@@ -231,7 +270,8 @@ fn text(document: &Document, path: &Path) -> String {
     lines.extend(document.lights.iter().map(|light| format!("  light {}", light.id)));
     for receipt in &document.provenance.receipts {
         let records: u64 = receipt.inputs.iter().map(|input| input.records).sum();
-        lines.push(format!("read {} files, {records} records", receipt.inputs.len()));
+        let plural = |count: u64, noun: &str| format!("{count} {noun}{}", if count == 1 { "" } else { "s" });
+        lines.push(format!("read {}, {}", plural(receipt.inputs.len() as u64, "file"), plural(records, "record")));
         lines.extend(receipt.assumptions.iter().map(|assumption| format!("assumed: {}", assumption.text)));
         lines.extend(notices(receipt));
         if !receipt.unfilled.is_empty() {

@@ -218,13 +218,20 @@ fn perfect_diffuser(document: &Document, measurement: &Measurement) -> Option<Ar
         Array2::from_shape_fn((usize::try_from(groups).ok()?, measurement.emission.len()), |(group, column)| {
             let in_group =
                 |row: usize| derivation.reference_group.get(row).is_some_and(|&g| usize::try_from(g) == Ok(group));
-            let offset = dark.map_or(0.0, |dark| mean(dark, column, &|_| true));
+            // A dark signal on the floor is an upper bound, and the importer took nothing off there.
+            let offset = dark.filter(|dark| !is_bound(dark, column)).map_or(0.0, |dark| mean(dark, column, &|_| true));
+            let offset = if offset.is_finite() { offset } else { 0.0 };
             (mean(reference, column, &in_group) - offset) / certified_at(column)
         });
     Some(Array2::from_shape_fn(measurement.shape(), |(row, column)| {
         let group = derivation.row_reference.get(row).and_then(|&group| usize::try_from(group).ok());
         group.and_then(|group| table.get((group, column))).copied().unwrap_or(f64::NAN)
     }))
+}
+
+/// True where the mean of a dark signal is an upper bound: a part of it lies on the instrument's floor.
+fn is_bound(dark: &Measurement, column: usize) -> bool {
+    (0..dark.acquisitions.len()).map(|row| dark.flags_at(row, column)).any(|flags| flags.contains(Flag::BelowDetection))
 }
 
 /// True where some row has a usable value with a positive weight.
