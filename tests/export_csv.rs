@@ -79,7 +79,7 @@ fn a_band_with_repeats_times_and_its_particulars() {
         wavelength_nm: Some(365.5),
         fwhm_nm: Some(10.25),
         filter: Some("UG1".into()),
-        polarisation: None,
+        ..Excitation::default()
     }];
     for (row, acquisition) in band.acquisitions.iter_mut().enumerate() {
         acquisition.geometry = None;

@@ -20,24 +20,13 @@ fn document(grid: &[Geometry], values: Vec<f64>, sigma: Option<Vec<f64>>, refere
     let shape = (grid.len(), 1);
     let mut quantity = Quantity::unstated(QuantityKind::BandRadianceFactor);
     quantity.reference = reference;
+    let acquisitions = grid.iter().zip(0..).map(|(g, order)| Acquisition::at(Some(*g), order)).collect();
+    let values = Array2::from_shape_vec(shape, values).unwrap();
+    let emission = EmissionAxis::Band { band: None };
+    let standard = sigma.map(|sigma| Array2::from_shape_vec(shape, sigma).unwrap());
     let measurement = Measurement {
-        id: Id::new("scan").unwrap(),
-        title: None,
-        quantity,
-        role: Role::Sample,
-        sample: None,
-        instrument: None,
-        white_reference: None,
-        emission: EmissionAxis::Band { band: None },
-        excitations: Vec::new(),
-        acquisitions: grid.iter().zip(0..).map(|(g, order)| Acquisition::at(Some(*g), order)).collect(),
-        values: Array2::from_shape_vec(shape, values).unwrap(),
-        flags: Array2::zeros(shape),
-        uncertainty: Uncertainty {
-            standard: sigma.map(|sigma| Array2::from_shape_vec(shape, sigma).unwrap()),
-            components: Vec::new(),
-        },
-        derivation: None,
+        uncertainty: Uncertainty { standard, ..Uncertainty::default() },
+        ..Measurement::new(Id::new("scan").unwrap(), Role::Sample, quantity, emission, acquisitions, values)
     };
     Document { measurements: vec![measurement], ..Document::default() }
 }
@@ -133,11 +122,7 @@ fn what_all_values_share_is_kept_apart() {
     let (values, sigma) = measure(&paper_sphere(), &grid, 0.01, &mut Random::new(1));
     let mut document = document(&grid, values, Some(sigma), FIXED);
     let alone = fit(&document, &FitOptions::default()).unwrap();
-    document.measurements[0].uncertainty.components.push(Component {
-        name: "certificate".into(),
-        relative: vec![0.02],
-        correlated_over: CorrelatedOver::All,
-    });
+    document.measurements[0].uncertainty.components.push(Component::new("certificate", vec![0.02], CorrelatedOver::All));
     let shared = fit(&document, &FitOptions::default()).unwrap();
     assert_eq!(alone.covariance, shared.covariance);
     assert_eq!(shared.terms[0].parameters[0].shared_relative_uncertainty, [0.02]);

@@ -11,22 +11,9 @@ use ndarray::{Array2, array};
 fn measurement(id: &str, kind: QuantityKind, role: Role, nm: &[f64], values: Array2<f64>) -> Measurement {
     let rows = values.nrows() as u32;
     let geometry = |k: u32| Geometry::from_signed(10.0 * f64::from(k), 20.0, SignHabit::MirrorAtEqual).unwrap();
-    Measurement {
-        id: Id::new(id).unwrap(),
-        title: None,
-        quantity: Quantity::absolute(kind, Part::Total),
-        role,
-        sample: None,
-        instrument: None,
-        white_reference: None,
-        emission: EmissionAxis::Wavelengths(WavelengthAxis::new(nm.to_vec(), Bandpass::Unstated).unwrap()),
-        excitations: Vec::new(),
-        acquisitions: (0..rows).map(|k| Acquisition::at(Some(geometry(k)), k)).collect(),
-        flags: Array2::zeros(values.dim()),
-        values,
-        uncertainty: Uncertainty::default(),
-        derivation: None,
-    }
+    let emission = EmissionAxis::Wavelengths(WavelengthAxis::new(nm.to_vec(), Bandpass::Unstated).unwrap());
+    let acquisitions = (0..rows).map(|k| Acquisition::at(Some(geometry(k)), k)).collect();
+    Measurement::new(Id::new(id).unwrap(), role, Quantity::absolute(kind, Part::Total), emission, acquisitions, values)
 }
 
 /// Two rows, three wavelengths; the white radiates 1, 2, 5 and is certified at 0.5.
@@ -114,13 +101,10 @@ fn the_scale_of_a_record_is_independent_between_rows_and_the_white_is_shared() {
     document.measurements[2].uncertainty = Uncertainty {
         standard: Some(Array2::zeros((2, 3))),
         components: vec![
-            Component {
-                name: "record scale".into(),
-                relative: vec![0.01],
-                correlated_over: CorrelatedOver::Wavelengths,
-            },
-            Component { name: "certificate".into(), relative: vec![0.02], correlated_over: CorrelatedOver::All },
+            Component::new("record scale", vec![0.01], CorrelatedOver::Wavelengths),
+            Component::new("certificate", vec![0.02], CorrelatedOver::All),
         ],
+        ..Uncertainty::default()
     };
     let reduced = reduce(&document, document.measurement("scan").unwrap(), band(500.0, 520.0)).unwrap();
     let sigma = reduced.sigma.unwrap();

@@ -131,7 +131,11 @@ fn clean() -> Document {
     }
     if let Some(spectrum) = &mut document.lights[0].spectrum {
         spectrum.axis.bandpass =
-            Bandpass::Stated { fwhm_nm: vec![8.0], shape: bbrf::quantity::BandpassShape::Triangular };
+            Bandpass::Stated {
+                fwhm_nm: vec![8.0],
+                shape: bbrf::quantity::BandpassShape::Triangular,
+                correction: bbrf::quantity::BandpassCorrection::Unstated,
+            };
     }
     document.models[0].data_digest = bbrf::container::measurement_digest(&document.measurements[1]).unwrap();
     document

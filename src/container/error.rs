@@ -137,6 +137,14 @@ impl ReadError {
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum EncodeError {
+    /// An extension holds what the format cannot.
+    #[error("extension: `{name}`: found {found}; expected numbers or texts of a fixed type that fill their shape")]
+    Extension {
+        /// The object or attribute.
+        name: String,
+        /// What is wrong with it.
+        found: String,
+    },
     /// The document is not consistent, or holds a text with U+0000.
     #[error(transparent)]
     Document(#[from] DocumentError),

@@ -1,6 +1,13 @@
 //! The one table of every path and attribute name of the standard, with type, unit and meaning. Reader, writer, rules
 //! and the tables of the specification take the names from here.
 
+use std::borrow::Cow;
+use std::sync::LazyLock;
+
+use super::fields::entries;
+use crate::dataset::{Conditions, Instrument, Light, Sample, WhiteReference};
+use crate::quantity::Statement;
+
 /// Version of the standard that is written.
 pub const VERSION: &str = "1.0";
 /// The major version that is understood.
@@ -41,26 +48,20 @@ pub mod name {
     pub const TITLE: &str = "title";
     pub const LICENSE: &str = "license";
     pub const CITATION: &str = "citation";
+    pub const CONTACT: &str = "contact";
+    pub const EXTENSION: &str = "extension";
     pub const POSITION: &str = "position";
     pub const UNITS: &str = "units";
+    pub const SI_FACTOR: &str = "unit_si_factor";
+    pub const SI_EXPONENTS: &str = "unit_si_exponents";
     pub const LONG_NAME: &str = "long_name";
     pub const COORDINATES: &str = "coordinates";
     pub const ANCILLARY: &str = "ancillary_variables";
     pub const FLAG_MASKS: &str = "flag_masks";
     pub const FLAG_MEANINGS: &str = "flag_meanings";
 
-    pub const MATERIAL: &str = "material";
-    pub const MARK: &str = "mark";
-    pub const SIMULATED: &str = "simulated";
-    pub const MODEL_NAME: &str = "model";
-    pub const SERIAL: &str = "serial";
-    pub const APERTURE: &str = "aperture";
-    pub const ACCESSORIES: &str = "accessories";
-    pub const DISTANCE_MM: &str = "distance_mm";
-    pub const CERTIFICATE: &str = "certificate";
     pub const CERTIFIED_WAVELENGTH: &str = "certified_wavelength";
     pub const CERTIFIED_FACTOR: &str = "certified_factor";
-    pub const CERTIFIED_RELATIVE_U: &str = "certified_relative_uncertainty";
 
     pub const QUANTITY: &str = "quantity";
     pub const PART: &str = "part";
@@ -73,6 +74,8 @@ pub mod name {
     pub const ACQUISITION: &str = "acquisition";
     pub const WAVELENGTH: &str = "wavelength_emission";
     pub const FWHM: &str = "wavelength_emission_fwhm";
+    pub const WAVELENGTH_ACTUAL: &str = "wavelength_emission_actual";
+    pub const CORRECTION: &str = "bandpass_correction";
     pub const SHAPE: &str = "bandpass_shape";
     pub const BAND: &str = "band";
     pub const FROM_NM: &str = "from_nm";
@@ -95,6 +98,14 @@ pub mod name {
     pub const EXCITATION_FWHM: &str = "excitation_fwhm";
     pub const EXCITATION_FILTER: &str = "excitation_filter";
     pub const EXCITATION_POLARISATION: &str = "excitation_polarisation";
+    pub const EXCITATION_ACTUAL: &str = "excitation_actual";
+    pub const EXCITATION_SHAPE: &str = "excitation_shape";
+    pub const EXCITATION_CORRECTION: &str = "excitation_correction";
+    pub const DIRECTION_TEST: &str = "direction_test";
+    pub const DIRECTION_TEST_ROW: &str = "direction_test_row";
+    pub const DIRECTION_TEST_INCIDENCE: &str = "direction_test_incidence";
+    pub const DIRECTION_TEST_VIEWING: &str = "direction_test_viewing";
+    pub const XYZ: &str = "xyz";
     pub const VALUE: &str = "value";
     pub const VALUE_U: &str = "value_u";
     pub const VALUE_FLAG: &str = "value_flag";
@@ -142,7 +153,8 @@ pub mod name {
 pub const ROW_FIELDS: [&str; 5] = [GEOMETRY, name::EXCITATION, name::TIME, name::EXPOSURE, name::QUALITY_CODE];
 const GEOMETRY: &str = "geometry";
 /// The optional fields of an excitation state, in the order of their bits in `excitation_stated`.
-pub const EXCITATION_FIELDS: [&str; 5] = ["light", "wavelength", "fwhm", "filter", "polarisation"];
+pub const EXCITATION_FIELDS: [&str; 8] =
+    ["light", "wavelength", "fwhm", "filter", "polarisation", "actual", "shape", "correction"];
 
 /// Attributes that other programs add when they write or rewrite a file. They are no content.
 pub const FOREIGN_ATTRIBUTES: [&str; 6] =
@@ -169,38 +181,58 @@ pub enum Kind {
 }
 
 /// One row of the table.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub struct Entry {
     /// Path; `*` stands for an identifier or a number, `@` precedes an attribute.
-    pub path: &'static str,
+    pub path: Cow<'static, str>,
     /// Group, dataset or attribute, and its type.
     pub kind: Kind,
     /// Unit, `1` for none; empty for texts and groups; `*` where the quantity gives it.
     pub unit: &'static str,
     /// What it is.
-    pub meaning: &'static str,
+    pub meaning: Cow<'static, str>,
 }
 
 const fn group(path: &'static str, meaning: &'static str) -> Entry {
-    Entry { path, kind: Kind::Group, unit: "", meaning }
+    Entry { path: Cow::Borrowed(path), kind: Kind::Group, unit: "", meaning: Cow::Borrowed(meaning) }
 }
 
 const fn dataset(path: &'static str, kind: &'static str, unit: &'static str, meaning: &'static str) -> Entry {
-    Entry { path, kind: Kind::Dataset(kind), unit, meaning }
+    Entry { path: Cow::Borrowed(path), kind: Kind::Dataset(kind), unit, meaning: Cow::Borrowed(meaning) }
 }
 
 const fn attribute(path: &'static str, kind: &'static str, unit: &'static str, meaning: &'static str) -> Entry {
-    Entry { path, kind: Kind::Attribute(kind), unit, meaning }
+    Entry { path: Cow::Borrowed(path), kind: Kind::Attribute(kind), unit, meaning: Cow::Borrowed(meaning) }
 }
 
 #[path = "layout_table.rs"]
-mod table;
-pub use table::TABLE;
+mod written;
+
+/// Every path of the standard: the arrays, which are written down one by one, and the fields of the descriptions, which
+/// the types of the document give.
+pub fn table() -> &'static [Entry] {
+    static TABLE: LazyLock<Vec<Entry>> = LazyLock::new(|| {
+        let mut table = written::TABLE.to_vec();
+        table.extend(entries::<Sample>("/sample/*"));
+        table.extend(entries::<Instrument>("/instrument/*"));
+        table.extend(entries::<Light>("/light/*"));
+        table.extend(entries::<WhiteReference>("/white_reference/*"));
+        table.extend(entries::<Conditions>("/measurement/*"));
+        table.extend(entries::<Statement>("/**/value_u"));
+        table.extend(entries::<Statement>("/measurement/*/value_u_shared_*"));
+        table.sort_by(|a, b| written::order(&a.path).cmp(&written::order(&b.path)));
+        table
+    });
+    &TABLE
+}
 
 /// The row of the table for a path of a file, as in `/measurement/scan/value@units`.
 #[must_use]
 pub fn find(path: &str) -> Option<&'static Entry> {
-    TABLE.iter().find(|entry| matches(entry.path, path))
+    if path.starts_with("/extension/") {
+        return table().iter().find(|entry| entry.path == "/extension/*");
+    }
+    table().iter().find(|entry| matches(&entry.path, path))
 }
 
 /// True where the path has the form of the pattern: `*` stands for one or more characters within a name, `/**` for any

@@ -4,44 +4,32 @@ use super::{Entry, attribute as a, dataset as d, group as g};
 
 /// Every path of the standard.
 #[rustfmt::skip]
-pub const TABLE: &[Entry] = &[
+pub(super) const TABLE: &[Entry] = &[
     g("/", "the document"),
     a("/@Conventions", "string", "", "CF and BBRF conventions that the file follows"),
     a("/@bbrf_version", "string", "", "version of the standard, MAJOR.MINOR"),
     a("/@title", "string", "", "name of the document"),
     a("/@license", "string", "", "SPDX identifier of the licence of the data"),
     a("/@citation", "string", "", "how to cite the data"),
+    a("/@contact", "string", "", "whom to ask about the data"),
     a("/@digest", "string", "", "SHA-256 of the content of the document"),
     a("/@sha256", "string", "", "SHA-256 of the attributes of this group"),
 
     g("/sample", "samples"),
     g("/sample/*", "a sample, under its identifier"),
     a("/sample/*@position", "int32", "1", "position in the list of samples"),
-    a("/sample/*@title", "string", "", "name"),
-    a("/sample/*@material", "string", "", "material, make and lot"),
-    a("/sample/*@mark", "string", "", "where the mark (+x, azimuth zero) is on the sample"),
-    a("/sample/*@simulated", "uint8", "1", "1 where the numbers were computed and not measured"),
 
     g("/instrument", "instruments"),
     g("/instrument/*", "an instrument, under its identifier"),
     a("/instrument/*@position", "int32", "1", "position in the list of instruments"),
-    a("/instrument/*@model", "string", "", "make and model"),
-    a("/instrument/*@serial", "string", "", "serial number"),
-    a("/instrument/*@aperture", "string", "", "measuring aperture"),
-    a("/instrument/*@accessories", "string", "", "lenses and filters"),
-    a("/instrument/*@distance_mm", "float64", "mm", "distance from the surface"),
 
     g("/light", "light sources"),
     g("/light/*", "a light source, under its identifier"),
     a("/light/*@position", "int32", "1", "position in the list of lights"),
-    a("/light/*@title", "string", "", "name"),
 
     g("/white_reference", "white references"),
     g("/white_reference/*", "a white reference, under its identifier"),
     a("/white_reference/*@position", "int32", "1", "position in the list of white references"),
-    a("/white_reference/*@title", "string", "", "name"),
-    a("/white_reference/*@certificate", "string", "", "number of the certificate"),
-    a("/white_reference/*@certified_relative_uncertainty", "float64", "1", "relative standard uncertainty common to all wavelengths"),
     d("/white_reference/*/certified_wavelength", "float64", "nm", "wavelengths in air; absent where one factor serves all"),
     d("/white_reference/*/certified_factor", "float64", "1", "certified radiance factor"),
 
@@ -141,6 +129,22 @@ pub const TABLE: &[Entry] = &[
     a("/**/band@from_nm", "float64", "nm", "lower end; absent where the source does not say"),
     a("/**/band@to_nm", "float64", "nm", "upper end"),
     d("/**/*_index", "int32", "1", "dimension scale of an axis without coordinate"),
+    a("/**/value@unit_si_factor", "float64", "1", "what one unit is in the coherent SI unit"),
+    a("/**/value@unit_si_exponents", "int8", "1", "exponents of m, kg, s, A, K, mol, cd"),
+    a("/**/value_u@unit_si_factor", "float64", "1", "what one unit is in the coherent SI unit"),
+    a("/**/value_u@unit_si_exponents", "int8", "1", "exponents of m, kg, s, A, K, mol, cd"),
+    d("/**/wavelength_emission_actual", "float64", "nm", "centre of the bandpass as calibrated; absent where the source does not say"),
+    a("/**/wavelength_emission_fwhm@bandpass_correction", "string", "", "whether the values are corrected for the bandpass"),
+    d("/measurement/*/excitation_actual", "float64", "nm", "centre of the excitation as calibrated; NaN where unstated"),
+    d("/measurement/*/excitation_shape", "string", "", "shape of the slit function of the excitation"),
+    d("/measurement/*/excitation_correction", "string", "", "whether the values are corrected for the width of the excitation"),
+    d("/measurement/*/direction_test", "int32", "1", "number of the self-test vector; dimension scale"),
+    d("/measurement/*/xyz", "int32", "1", "component of a vector: x to the mark, z the normal; dimension scale"),
+    d("/measurement/*/direction_test_row", "uint32", "1", "row of the measurement whose directions are stated again"),
+    d("/measurement/*/direction_test_incidence", "float64", "1", "unit vector from the surface to the source"),
+    d("/measurement/*/direction_test_viewing", "float64", "1", "unit vector from the surface to the detector"),
+    g("/extension", "what laboratories added of their own"),
+    g("/extension/*", "content of a laboratory, under its reverse domain name; anything may be below"),
     g("/provenance", "where the document comes from"),
     d("/provenance/receipts", "string", "", "what was imported and assumed, JSON"),
     d("/provenance/steps", "string", "", "what was done since, JSON"),
@@ -150,3 +154,12 @@ pub const TABLE: &[Entry] = &[
     a("/**@flag_meanings", "string", "", "CF: the names of the bits"),
     a("/**@sha256", "string", "", "SHA-256 of this dataset or of the attributes of this group"),
 ];
+
+/// Where a row stands: in the group whose path it shares, attributes before members.
+pub(super) fn order(path: &str) -> (usize, String, bool) {
+    let object = path.split('@').next().unwrap_or(path);
+    let top = object.split('/').nth(1).unwrap_or_default();
+    let rooms = ["", "sample", "instrument", "light", "white_reference", "measurement", "model", "**", "provenance", "extension"];
+    let room = rooms.iter().position(|room| *room == top).unwrap_or(rooms.len());
+    (room, object.to_owned(), !path.contains('@'))
+}

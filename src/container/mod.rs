@@ -13,6 +13,7 @@ mod decode;
 mod digest;
 mod encode;
 mod error;
+mod fields;
 pub mod layout;
 mod limits;
 mod links;
@@ -20,7 +21,7 @@ mod open;
 mod read;
 pub mod replace;
 #[doc(hidden)]
-pub mod tree;
+pub use crate::dataset::tree;
 #[cfg(feature = "write")]
 mod write;
 

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use serde::{Deserialize, Serialize};
 
-use super::{Id, Instrument, Light, Measurement, Model, Provenance, Sample, ShapeError, WhiteReference};
+use super::{Extension, Id, Instrument, Light, Measurement, Model, Provenance, Sample, ShapeError, WhiteReference};
 
 /// Everything in one file.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, schemars::JsonSchema)]
@@ -18,6 +18,9 @@ pub struct Document {
     /// How to cite the data.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub citation: Option<String>,
+    /// Whom to ask about the data.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub contact: Option<String>,
     /// Samples.
     #[serde(default)]
     pub samples: Vec<Sample>,
@@ -39,6 +42,9 @@ pub struct Document {
     /// Where all that comes from.
     #[serde(default)]
     pub provenance: Provenance,
+    /// What laboratories added of their own.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub extensions: Vec<Extension>,
 }
 
 /// Why a document is not consistent.
@@ -94,6 +100,7 @@ impl Document {
         let references = unique("white_references", self.white_references.iter().map(|part| &part.id))?;
         let measurements = unique("measurements", self.measurements.iter().map(|part| &part.id))?;
         unique("models", self.models.iter().map(|part| &part.id))?;
+        unique("extensions", self.extensions.iter().map(|part| &part.domain))?;
         for measurement in &self.measurements {
             measurement.check_shape()?;
             let from = format!("measurements/{}", measurement.id);

@@ -2,10 +2,11 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::Id;
+use super::{Calibration, Id};
+use crate::quantity::Finite;
 
 /// An instrument.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Instrument {
     /// Identifier in the document.
     pub id: Id,
@@ -23,5 +24,26 @@ pub struct Instrument {
     pub accessories: Option<String>,
     /// Distance from the surface, mm.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub distance_mm: Option<f64>,
+    pub distance_mm: Option<Finite>,
+    /// Full angle of the visual field, degrees.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub visual_field_deg: Option<Finite>,
+    /// Solid angle of the collected beam, sr.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub solid_angle_sr: Option<Finite>,
+    /// Stray light over the whole signal, dimensionless.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub stray_light_relative: Option<Finite>,
+    /// Chain of calibrations.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub calibration: Vec<Calibration>,
+}
+
+impl Instrument {
+    /// Diameter of the measured spot seen along the normal, mm: 2 d tan(field / 2). 0.3 degrees from 800 mm is 4.19 mm.
+    #[must_use]
+    pub fn spot_mm(&self) -> Option<f64> {
+        let (distance, field) = (self.distance_mm?.get(), self.visual_field_deg?.get());
+        Some(2.0 * distance * (field.to_radians() / 2.0).tan())
+    }
 }

@@ -3,8 +3,8 @@
 use ndarray::Array2;
 use serde::{Deserialize, Serialize};
 
-use super::Id;
-use crate::quantity::{EmissionAxis, Flags, Geometry, Quantity, Uncertainty, named, rows_plain};
+use super::{Conditions, DirectionTest, Id};
+use crate::quantity::{BandpassCorrection, BandpassShape, EmissionAxis, Flags, Geometry, Quantity, Uncertainty, named, rows_plain};
 
 named! {
     /// What the instrument looked at.
@@ -21,12 +21,12 @@ named! {
 }
 
 /// What fell on the sample during an acquisition.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Excitation {
     /// The light, by its id in the document.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub light: Option<Id>,
-    /// Centre of a monochromatic or filtered excitation, nm.
+    /// Nominal centre of a monochromatic or filtered excitation, nm.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub wavelength_nm: Option<f64>,
     /// Its full width at half maximum, nm.
@@ -38,6 +38,15 @@ pub struct Excitation {
     /// Polarisation, free text.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub polarisation: Option<String>,
+    /// The centre as calibrated, nm.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub actual_nm: Option<f64>,
+    /// Shape of the slit function.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub shape: Option<BandpassShape>,
+    /// Whether the values are corrected for this width.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub correction: Option<BandpassCorrection>,
 }
 
 /// One row of a measurement: one look of the instrument.
@@ -127,6 +136,12 @@ pub struct Measurement {
     /// Uncertainty of the values.
     #[serde(default)]
     pub uncertainty: Uncertainty,
+    /// Who measured, where, in what surroundings.
+    #[serde(default)]
+    pub conditions: Conditions,
+    /// Self-test vectors: directions of some rows as unit vectors.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub direction_tests: Vec<DirectionTest>,
     /// How the values were derived from other measurements of the document.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub derivation: Option<Derivation>,
@@ -147,6 +162,36 @@ pub struct ShapeError {
 }
 
 impl Measurement {
+    /// Values of a quantity with everything else unknown: no flag, no uncertainty, no reference to other parts.
+    #[must_use]
+    pub fn new(
+        id: Id,
+        role: Role,
+        quantity: Quantity,
+        emission: EmissionAxis,
+        acquisitions: Vec<Acquisition>,
+        values: Array2<f64>,
+    ) -> Self {
+        Self {
+            id,
+            title: None,
+            quantity,
+            role,
+            sample: None,
+            instrument: None,
+            white_reference: None,
+            emission,
+            excitations: Vec::new(),
+            acquisitions,
+            flags: Array2::zeros(values.raw_dim()),
+            values,
+            uncertainty: Uncertainty::default(),
+            conditions: Conditions::default(),
+            direction_tests: Vec::new(),
+            derivation: None,
+        }
+    }
+
     /// Rows x emission values.
     #[must_use]
     pub fn shape(&self) -> (usize, usize) {

@@ -6,7 +6,11 @@
 //!
 //! *Invariant:* prediction, residual and reduction are defined here, once; whoever fits, validates or draws uses them.
 
+mod calibration;
+mod conditions;
+mod direction_test;
 mod document;
+mod extension;
 mod id;
 mod instrument;
 mod light;
@@ -17,8 +21,14 @@ mod provenance;
 mod reduce;
 mod residual;
 mod sample;
+#[doc(hidden)]
+pub mod tree;
 
+pub use calibration::Calibration;
+pub use conditions::Conditions;
+pub use direction_test::DirectionTest;
 pub use document::{Document, DocumentError};
+pub use extension::Extension;
 pub use id::{Id, IdError};
 pub use instrument::Instrument;
 pub use light::{Light, LightSpectrum};
@@ -28,4 +38,4 @@ pub use place::Place;
 pub use provenance::{Assumption, InputFile, Notice, Provenance, Receipt, Step};
 pub use reduce::{ReduceError, Reduced, Reduction, UnknownReduction, reduce};
 pub use residual::{Prediction, TermsError, predict, residuals};
-pub use sample::{Sample, WhiteReference};
+pub use sample::{Sample, Symmetry, WhiteReference};

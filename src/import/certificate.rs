@@ -10,6 +10,7 @@ use super::record::Record;
 use super::source::Source;
 use super::{Options, columns};
 use crate::dataset::{Id, Measurement, Place, WhiteReference};
+use crate::quantity::Finite;
 
 /// The reference with its factor on the emission axis.
 #[derive(Debug)]
@@ -35,11 +36,9 @@ pub(super) fn read(plan: &Plan, sample: &Measurement, notes: &mut Notes) -> Resu
     let settings = &plan.settings;
     let mut reference = WhiteReference {
         id: Id::from_title("white-reference"),
-        title: None,
         certificate: settings.certificate.clone(),
-        certified_nm: Vec::new(),
-        certified_factor: Vec::new(),
-        certified_relative_uncertainty: settings.certified_relative_uncertainty,
+        certified_relative_uncertainty: settings.certified_relative_uncertainty.and_then(|u| Finite::try_from(u).ok()),
+        ..WhiteReference::default()
     };
     let Some(text) = &settings.certified_factor else {
         let text = "no certified factor is stated: the factor is relative to the real white reference as if it were \

@@ -12,7 +12,7 @@ use super::plan::{Plan, geometry_key};
 use super::raw::record_scale;
 use super::receipt::{Notes, listed};
 use super::reference::{self, Groups};
-use crate::dataset::{Acquisition, Derivation, Id, Measurement, Role, WhiteReference};
+use crate::dataset::{Acquisition, Conditions, Derivation, Id, Measurement, Role, WhiteReference};
 use crate::quantity::{
     Basis, Component, CorrelatedOver, Flag, Flags, NormalisedAt, Quantity, QuantityKind, Uncertainty,
     ratio_to_reference,
@@ -168,7 +168,9 @@ impl<'a> Division<'a> {
             acquisitions: self.acquisitions(groups),
             values,
             flags,
-            uncertainty: Uncertainty { standard: self.spread.known().then_some(sigma), components },
+            uncertainty: Uncertainty { standard: self.spread.known().then_some(sigma), components, ..Uncertainty::default() },
+            conditions: Conditions::default(),
+            direction_tests: Vec::new(),
             derivation: Some(self.derivation(groups)),
         }
     }
@@ -229,23 +231,11 @@ impl<'a> Division<'a> {
             components.push(record_scale(if own { sample_scale.hypot(white_scale) } else { sample_scale }));
         }
         if self.spread.known() && !own {
-            components.push(Component {
-                name: "white reference".to_owned(),
-                relative: relative.columns().into_iter().map(|column| root_mean_square(column.iter())).collect(),
-                correlated_over: CorrelatedOver::Acquisitions,
-            });
-            components.push(Component {
-                name: "white reference scale".to_owned(),
-                relative: vec![white_scale],
-                correlated_over: CorrelatedOver::All,
-            });
+            components.push(Component::new("white reference", relative.columns().into_iter().map(|column| root_mean_square(column.iter())).collect(), CorrelatedOver::Acquisitions));
+            components.push(Component::new("white reference scale", vec![white_scale], CorrelatedOver::All));
         }
         if let Some(uncertainty) = certificate.reference.certified_relative_uncertainty {
-            components.push(Component {
-                name: "certified factor".to_owned(),
-                relative: vec![uncertainty],
-                correlated_over: CorrelatedOver::All,
-            });
+            components.push(Component::new("certified factor", vec![uncertainty.get()], CorrelatedOver::All));
         }
         components
     }

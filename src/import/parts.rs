@@ -5,7 +5,7 @@ use super::keys::Settings;
 use super::receipt::Notes;
 use super::record::Details;
 use crate::dataset::{Document, Excitation, Id, Instrument, Light, Measurement, Sample};
-use crate::quantity::{Bandpass, BandpassShape, EmissionAxis};
+use crate::quantity::{Bandpass, BandpassCorrection, BandpassShape, EmissionAxis};
 
 /// A document with its title, licence and citation.
 pub(super) fn document(settings: &Settings) -> Document {
@@ -22,7 +22,11 @@ pub(super) fn bandpass(settings: &Settings, reported_nm: Option<f64>) -> Bandpas
     settings
         .bandpass_nm
         .or(reported_nm)
-        .map_or(Bandpass::Unstated, |fwhm| Bandpass::Stated { fwhm_nm: vec![fwhm], shape: BandpassShape::Unstated })
+        .map_or(Bandpass::Unstated, |fwhm| Bandpass::Stated {
+            fwhm_nm: vec![fwhm],
+            shape: BandpassShape::Unstated,
+            correction: BandpassCorrection::Unstated,
+        })
 }
 
 /// The excitation states of a measurement, each once.
@@ -41,7 +45,7 @@ impl Excitations {
             wavelength_nm: settings.excitation_nm,
             fwhm_nm: settings.excitation_fwhm_nm,
             filter: settings.filter.clone(),
-            polarisation: None,
+            ..Excitation::default()
         };
         Self { list: Vec::new(), settings }
     }
@@ -87,6 +91,7 @@ pub(super) fn attach_sample(
             material: settings.material.clone(),
             mark: settings.mark.clone(),
             simulated,
+            ..Sample::default()
         });
     }
 }
@@ -115,7 +120,7 @@ pub(super) fn attach_instrument(
     if !document.instruments.iter().any(|instrument| instrument.id == id) {
         let aperture = said(|details| &details.aperture);
         let accessories = said(|details| &details.accessories);
-        document.instruments.push(Instrument { id, model, serial, aperture, accessories, distance_mm: None });
+        document.instruments.push(Instrument { id, model, serial, aperture, accessories, ..Instrument::default() });
     }
 }
 
@@ -124,7 +129,7 @@ pub(super) fn attach_lights(document: &mut Document, measurement: &Measurement, 
     for id in measurement.excitations.iter().filter_map(|excitation| excitation.light.as_ref()) {
         if !document.lights.iter().any(|light| light.id == *id) {
             let title = settings.light.clone().filter(|name| Id::from_title(name) == *id);
-            document.lights.push(Light { id: id.clone(), title, spectrum: None });
+            document.lights.push(Light { id: id.clone(), title, ..Light::default() });
         }
     }
 }

@@ -9,7 +9,7 @@ use super::plan::{Entry, Plan, first_record};
 use super::receipt::Notes;
 use super::record::Record;
 use super::times;
-use crate::dataset::{Acquisition, Id, Light, LightSpectrum, Measurement, Role};
+use crate::dataset::{Acquisition, Conditions, Id, Light, LightSpectrum, Measurement, Role};
 use crate::quantity::{
     Component, CorrelatedOver, EmissionAxis, Flag, Flags, Part, Quantity, QuantityKind, Uncertainty, WavelengthAxis,
 };
@@ -33,7 +33,7 @@ pub(super) fn lights<'a>(plan: &'a Plan, notes: &mut Notes) -> Vec<(Light, &'a E
                 notes.unfilled(format!("lights/{id}/spectrum/quantity/{field}"));
             }
         }
-        lights.push((Light { id, title: Some(name.to_owned()), spectrum }, entry));
+        lights.push((Light { id, title: Some(name.to_owned()), spectrum, ..Light::default() }, entry));
     }
     lights
 }
@@ -169,18 +169,16 @@ fn measurement(
         acquisitions: entries.iter().map(|(order, entry)| acquisition(plan, *order, entry)).collect(),
         values,
         flags,
-        uncertainty: Uncertainty { standard: noise.map(|_| sigma), components },
+        uncertainty: Uncertainty { standard: noise.map(|_| sigma), components, ..Uncertainty::default() },
+        conditions: Conditions::default(),
+        direction_tests: Vec::new(),
         derivation: None,
     })
 }
 
 /// The scale error of a record, shared by its wavelengths.
 pub(super) fn record_scale(relative: f64) -> Component {
-    Component {
-        name: "record scale".to_owned(),
-        relative: vec![relative],
-        correlated_over: CorrelatedOver::Wavelengths,
-    }
+    Component::new("record scale", vec![relative], CorrelatedOver::Wavelengths)
 }
 
 fn acquisition(plan: &Plan, order: usize, entry: &Entry) -> Acquisition {

@@ -49,7 +49,7 @@ use super::receipt::Notes;
 use super::rows::{Row, Rows};
 use super::source::Source;
 use super::{Options, scan};
-use crate::dataset::{Acquisition, Document, Id, Measurement, Role};
+use crate::dataset::{Acquisition, Conditions, Document, Id, Measurement, Role};
 use crate::quantity::{EmissionAxis, Flag, Flags, Uncertainty, WavelengthAxis};
 
 pub(super) const COLUMNS: &[&str] = &[
@@ -279,7 +279,9 @@ impl Table {
             acquisitions: self.acquisitions,
             values,
             flags,
-            uncertainty: Uncertainty { standard: has_sigma.then_some(sigma), components: Vec::new() },
+            uncertainty: Uncertainty { standard: has_sigma.then_some(sigma), ..Uncertainty::default() },
+            conditions: Conditions::default(),
+            direction_tests: Vec::new(),
             derivation: None,
         })
     }

@@ -9,19 +9,23 @@
 mod angle;
 mod convert;
 mod direction;
+mod finite;
 mod flag;
 mod kind;
 mod photometry;
 mod uncertainty;
+mod unit;
 mod wavelength;
 
 pub use angle::{cos_deg, sin_deg};
 pub use convert::{ConversionRefused, Quotient, ratio_to_reference};
 pub use direction::{Direction, DirectionError, Geometry, HalfAngles, SignHabit};
+pub use finite::{Finite, NotFinite};
 pub use flag::{Flag, Flags};
 pub(crate) use kind::named;
 pub use kind::{Basis, NormalisedAt, Part, Quantity, QuantityKind, Reference, ReferenceLight, UnknownName};
 pub use photometry::luminous_efficacy;
 pub(crate) use uncertainty::rows_plain;
-pub use uncertainty::{Component, CorrelatedOver, Uncertainty};
-pub use wavelength::{Band, Bandpass, BandpassShape, EmissionAxis, WavelengthAxis, WavelengthError};
+pub use uncertainty::{Component, CorrelatedOver, ErrorDistribution, EvaluationType, Statement, Uncertainty};
+pub use unit::SiUnit;
+pub use wavelength::{Band, Bandpass, BandpassCorrection, BandpassShape, EmissionAxis, WavelengthAxis, WavelengthError};

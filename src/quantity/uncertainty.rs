@@ -3,16 +3,66 @@
 use ndarray::Array2;
 use serde::{Deserialize, Serialize};
 
-/// What an uncertainty component is common to.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum CorrelatedOver {
-    /// One error for all wavelengths of an acquisition, independent between acquisitions (a record's scale).
-    Wavelengths,
-    /// One error for all acquisitions, independent between wavelengths (the noise of a shared white reference).
-    Acquisitions,
-    /// One error for every value (the certified factor of the reference).
-    All,
+use super::{Finite, named};
+
+named! {
+    /// What an uncertainty component is common to.
+    CorrelatedOver, "correlation" {
+        /// One error for all wavelengths of an acquisition, independent between acquisitions (a record's scale).
+        Wavelengths = "wavelengths",
+        /// One error for all acquisitions, independent between wavelengths (the noise of a shared white reference).
+        Acquisitions = "acquisitions",
+        /// One error for every value (the certified factor of the reference).
+        All = "all",
+    }
+}
+
+named! {
+    /// The distribution of an error, as the GUM (JCGM 100:2008, 4.3) names them.
+    ErrorDistribution, "error distribution" {
+        /// Normal.
+        Normal = "normal",
+        /// Student's t, of the degrees of freedom stated with it.
+        StudentT = "student-t",
+        /// Rectangular.
+        Rectangular = "rectangular",
+        /// Triangular.
+        Triangular = "triangular",
+        /// Arc sine, as of a quantity that swings.
+        ArcSine = "arc-sine",
+    }
+}
+
+named! {
+    /// How an uncertainty was evaluated (JCGM 100:2008, 2.3.2 and 2.3.3).
+    EvaluationType, "evaluation" {
+        /// By statistics of repeated readings.
+        A = "type-a",
+        /// By other means: certificate, data sheet, experience.
+        B = "type-b",
+    }
+}
+
+/// How the source states an uncertainty. The numbers of a file are always standard uncertainties (k = 1): where the
+/// source gave an expanded one, its coverage factor was divided out and stands here.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(default)]
+pub struct Statement {
+    /// Coverage factor k of the expanded uncertainty that the source gave; the stored numbers are already divided by it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub coverage_factor: Option<Finite>,
+    /// Coverage probability of that expanded uncertainty, between 0 and 1.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub coverage_probability: Option<Finite>,
+    /// Distribution of the error.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub distribution: Option<ErrorDistribution>,
+    /// Effective degrees of freedom.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub degrees_of_freedom: Option<Finite>,
+    /// Statistics, or other means.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub evaluation: Option<EvaluationType>,
 }
 
 /// One shared component of relative standard uncertainty.
@@ -24,9 +74,18 @@ pub struct Component {
     pub relative: Vec<f64>,
     /// What it is common to.
     pub correlated_over: CorrelatedOver,
+    /// How the source states it.
+    #[serde(flatten)]
+    pub statement: Statement,
 }
 
 impl Component {
+    /// A component of which no more is stated.
+    #[must_use]
+    pub fn new(name: impl Into<String>, relative: Vec<f64>, correlated_over: CorrelatedOver) -> Self {
+        Self { name: name.into(), relative, correlated_over, statement: Statement::default() }
+    }
+
     /// Relative standard uncertainty at an emission index; the last one given serves all that follow, none is 0.
     #[must_use]
     pub fn relative_at(&self, emission: usize) -> f64 {
@@ -41,6 +100,9 @@ pub struct Uncertainty {
     #[serde(with = "rows", skip_serializing_if = "Option::is_none", default)]
     #[schemars(with = "Option<Vec<Vec<Option<f64>>>>")]
     pub standard: Option<Array2<f64>>,
+    /// How the source states it.
+    #[serde(default)]
+    pub statement: Statement,
     /// Components shared between values; none of them is contained in `standard`.
     #[serde(default)]
     pub components: Vec<Component>,

@@ -2,18 +2,32 @@
 
 use serde::{Deserialize, Serialize};
 
-/// The shape of a slit function.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum BandpassShape {
-    /// Triangular.
-    Triangular,
-    /// Rectangular.
-    Rectangular,
-    /// Gaussian.
-    Gaussian,
-    /// The source does not say.
-    Unstated,
+use super::named;
+
+named! {
+    /// The shape of a slit function.
+    BandpassShape, "bandpass shape" {
+        /// Triangular.
+        Triangular = "triangular",
+        /// Rectangular.
+        Rectangular = "rectangular",
+        /// Gaussian.
+        Gaussian = "gaussian",
+        /// The source does not say.
+        Unstated = "unstated",
+    }
+}
+
+named! {
+    /// Whether values are corrected for the width of the bandpass.
+    BandpassCorrection, "bandpass correction" {
+        /// They are, as by ASTM E2729 or a deconvolution.
+        Corrected = "corrected",
+        /// They are as the instrument gave them.
+        Uncorrected = "uncorrected",
+        /// The source does not say.
+        Unstated = "unstated",
+    }
 }
 
 /// How wide the instrument looks at each wavelength. Bandpass and step are two different numbers.
@@ -28,6 +42,8 @@ pub enum Bandpass {
         fwhm_nm: Vec<f64>,
         /// Shape of the slit function.
         shape: BandpassShape,
+        /// Whether the values are corrected for it.
+        correction: BandpassCorrection,
     },
 }
 
@@ -38,6 +54,9 @@ pub struct WavelengthAxis {
     pub nm: Vec<f64>,
     /// Bandpass of the instrument on this axis.
     pub bandpass: Bandpass,
+    /// The centres as calibrated, nm: one for each nominal wavelength, or none where the source does not say.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub actual_nm: Vec<f64>,
 }
 
 /// Why a list of numbers is not a wavelength axis.
@@ -77,7 +96,7 @@ impl WavelengthAxis {
                 return Err(WavelengthError::NotAscending { index, previous: nm[index - 1], value });
             }
         }
-        Ok(Self { nm, bandpass })
+        Ok(Self { nm, bandpass, actual_nm: Vec::new() })
     }
 }
 

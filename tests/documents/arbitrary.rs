@@ -1,5 +1,6 @@
 //! Arbitrary documents: whatever the types allow that `Document::check` finds consistent.
 
+use bbrf::dataset::tree::{Array, Data, Dataset, Group};
 use bbrf::dataset::*;
 use bbrf::quantity::*;
 use bbrf::terms::{Denominator, Distribution, TermKind};
@@ -17,6 +18,11 @@ fn number() -> impl Strategy<Value = f64> {
         1 => select(vec![0.0, -0.0, f64::NAN, -f64::NAN, f64::INFINITY, f64::MIN_POSITIVE, 5e-324]),
         1 => any::<u64>().prop_map(|bits| f64::from_bits(0x7ff0_0000_0000_0001 | bits)),
     ]
+}
+
+/// Any finite number.
+fn finite() -> impl Strategy<Value = Finite> {
+    number().prop_filter_map("finite", |number| Finite::try_from(number).ok())
 }
 
 fn numbers(most: usize) -> impl Strategy<Value = Vec<f64>> {
@@ -57,13 +63,12 @@ fn choice(of: &[Id]) -> BoxedStrategy<Option<Id>> {
 }
 
 fn wavelengths() -> impl Strategy<Value = WavelengthAxis> {
-    let shapes =
-        vec![BandpassShape::Triangular, BandpassShape::Rectangular, BandpassShape::Gaussian, BandpassShape::Unstated];
     let bandpass = prop_oneof![
         Just(Bandpass::Unstated),
-        (numbers(5), select(shapes)).prop_map(|(fwhm_nm, shape)| Bandpass::Stated { fwhm_nm, shape }),
+        (numbers(5), select(BandpassShape::ALL), select(BandpassCorrection::ALL))
+            .prop_map(|(fwhm_nm, shape, correction)| Bandpass::Stated { fwhm_nm, shape, correction }),
     ];
-    (numbers(6), bandpass).prop_map(|(nm, bandpass)| WavelengthAxis { nm, bandpass })
+    (numbers(6), bandpass, numbers(6)).prop_map(|(nm, bandpass, actual_nm)| WavelengthAxis { nm, bandpass, actual_nm })
 }
 
 fn emission() -> impl Strategy<Value = EmissionAxis> {
@@ -130,23 +135,103 @@ fn acquisition() -> impl Strategy<Value = Acquisition> {
 }
 
 fn excitation(lights: &[Id]) -> impl Strategy<Value = Excitation> + use<> {
-    (choice(lights), of(number()), of(number()), of(text()), of(text())).prop_map(
-        |(light, wavelength_nm, fwhm_nm, filter, polarisation)| Excitation {
+    let slit = (of(number()), of(select(BandpassShape::ALL)), of(select(BandpassCorrection::ALL)));
+    (choice(lights), of(number()), of(number()), of(text()), of(text()), slit).prop_map(
+        |(light, wavelength_nm, fwhm_nm, filter, polarisation, (actual_nm, shape, correction))| Excitation {
             light,
             wavelength_nm,
             fwhm_nm,
             filter,
             polarisation,
+            actual_nm,
+            shape,
+            correction,
         },
     )
 }
 
+fn statement() -> impl Strategy<Value = Statement> {
+    let kinds = (of(select(ErrorDistribution::ALL)), of(select(EvaluationType::ALL)));
+    (of(finite()), of(finite()), of(finite()), kinds).prop_map(
+        |(coverage_factor, coverage_probability, degrees_of_freedom, (distribution, evaluation))| Statement {
+            coverage_factor,
+            coverage_probability,
+            distribution,
+            degrees_of_freedom,
+            evaluation,
+        },
+    )
+}
+
+fn calibration() -> impl Strategy<Value = Calibration> {
+    let texts = (of(text()), of(text()), of(text()), of(text()), of(text()), of(text()));
+    (texts, of(finite()), statement()).prop_map(|(texts, relative_standard_uncertainty, statement)| Calibration {
+        subject: texts.0,
+        artefact: texts.1,
+        certificate: texts.2,
+        laboratory: texts.3,
+        date: texts.4,
+        expires: texts.5,
+        relative_standard_uncertainty,
+        statement,
+    })
+}
+
+fn conditions() -> impl Strategy<Value = Conditions> {
+    let texts = (of(text()), of(text()), of(text()), of(text()), of(text()));
+    (texts, of(finite()), of(finite()), of(finite())).prop_map(
+        |(texts, temperature_celsius, humidity_percent, relative_drift)| Conditions {
+            operator: texts.0,
+            laboratory: texts.1,
+            temperature_celsius,
+            humidity_percent,
+            environment: texts.2,
+            viewing_polarisation: texts.3,
+            relative_drift,
+            drift_handling: texts.4,
+        },
+    )
+}
+
+fn vector() -> impl Strategy<Value = [f64; 3]> {
+    (number(), number(), number()).prop_map(|(x, y, z)| [x, y, z])
+}
+
+fn direction_test() -> impl Strategy<Value = DirectionTest> {
+    (any::<u32>(), vector(), vector()).prop_map(|(row, incidence, viewing)| DirectionTest { row, incidence, viewing })
+}
+
+/// Arrays of every type that an extension may hold.
+fn array() -> impl Strategy<Value = Array> {
+    let data = prop_oneof![
+        vec(any::<u8>(), 0..5).prop_map(Data::U8),
+        vec(any::<i64>(), 0..5).prop_map(Data::I64),
+        vec(any::<f32>(), 0..5).prop_map(Data::F32),
+        numbers(5).prop_map(Data::F64),
+        vec(text(), 0..4).prop_map(Data::Text),
+    ];
+    (data, any::<bool>()).prop_map(|(data, scalar)| if scalar && data.len() == 1 { Array::scalar(data) } else { Array::vector(data) })
+}
+
+fn extension(domain: Id) -> impl Strategy<Value = Extension> {
+    let attributes = || proptest::collection::btree_map("[a-z]{1,8}", array(), 0..3);
+    let dataset = (array(), attributes())
+        .prop_map(|(array, attributes)| Dataset { attributes, ..Dataset::new(array) });
+    let datasets = proptest::collection::btree_map("d[a-z]{1,8}", dataset, 0..3);
+    (attributes(), datasets).prop_map(move |(attributes, datasets)| {
+        let child = Group { attributes: attributes.clone(), ..Group::default() };
+        let content = Group { attributes, datasets: datasets.into_iter().collect(), groups: vec![("child".into(), child)] };
+        Extension { domain: domain.clone(), content }
+    })
+}
+
 fn component() -> impl Strategy<Value = Component> {
     let over = select(vec![CorrelatedOver::Wavelengths, CorrelatedOver::Acquisitions, CorrelatedOver::All]);
-    (text(), numbers(6), over).prop_map(|(name, relative, correlated_over)| Component {
+    (text(), numbers(6), over, statement()).prop_map(|(name, relative, correlated_over, statement)| Component {
         name,
         relative,
         correlated_over,
+        statement,
     })
 }
 
@@ -187,7 +272,7 @@ fn measurement(id: Id, names: &Names) -> impl Strategy<Value = Measurement> + us
         choice(&names.references),
         vec(excitation(&names.lights), 0..4),
         of(derivation(&names.measurements)),
-        vec(component(), 0..3),
+        (vec(component(), 0..3), statement(), conditions(), vec(direction_test(), 0..3)),
     );
     let body = (vec(acquisition(), 0..6), emission()).prop_flat_map(|(rows, emission)| {
         let shape = (rows.len(), emission.len());
@@ -196,7 +281,10 @@ fn measurement(id: Id, names: &Names) -> impl Strategy<Value = Measurement> + us
         (Just(rows), Just(emission), matrix(shape.0, shape.1), of(matrix(shape.0, shape.1)), flags)
     });
     (head, body).prop_map(move |(head, (acquisitions, emission, values, standard, flags))| {
-        let (title, quantity, role, sample, instrument, white_reference, excitations, derivation, components) = head;
+        let (title, quantity, role, sample, instrument, white_reference, excitations, derivation, more) = head;
+        let (components, statement, conditions, direction_tests) = more;
+        // A statement about uncertainties that are not there has no place.
+        let statement = if standard.is_some() { statement } else { Statement::default() };
         Measurement {
             id: id.clone(),
             title,
@@ -210,7 +298,9 @@ fn measurement(id: Id, names: &Names) -> impl Strategy<Value = Measurement> + us
             acquisitions,
             values,
             flags,
-            uncertainty: Uncertainty { standard, components },
+            uncertainty: Uncertainty { standard, statement, components },
+            conditions,
+            direction_tests,
             derivation,
         }
     })
@@ -219,41 +309,70 @@ fn measurement(id: Id, names: &Names) -> impl Strategy<Value = Measurement> + us
 fn light(id: Id) -> impl Strategy<Value = Light> {
     let spectrum = (quantity(), wavelengths(), numbers(6), vec(any::<u16>(), 0..6))
         .prop_map(|(quantity, axis, values, flags)| LightSpectrum { quantity, axis, values, flags });
-    (of(text()), of(spectrum)).prop_map(move |(title, spectrum)| Light { id: id.clone(), title, spectrum })
-}
-
-fn sample(id: Id) -> impl Strategy<Value = Sample> {
-    (of(text()), of(text()), of(text()), any::<bool>()).prop_map(move |(title, material, mark, simulated)| Sample {
-        id: id.clone(),
-        title,
-        material,
-        mark,
-        simulated,
-    })
-}
-
-fn instrument(id: Id) -> impl Strategy<Value = Instrument> {
-    (of(text()), of(text()), of(text()), of(text()), of(number())).prop_map(
-        move |(model, serial, aperture, accessories, distance_mm)| Instrument {
+    let numbers = (of(finite()), of(finite()), of(finite()));
+    (of(text()), of(text()), of(text()), numbers, vec(calibration(), 0..3), of(spectrum)).prop_map(
+        move |(title, make, polarisation, numbers, calibration, spectrum)| Light {
             id: id.clone(),
-            model,
-            serial,
-            aperture,
-            accessories,
-            distance_mm,
+            title,
+            make,
+            distance_mm: numbers.0,
+            beam_diameter_mm: numbers.1,
+            solid_angle_sr: numbers.2,
+            polarisation,
+            calibration,
+            spectrum,
         },
     )
 }
 
-fn white_reference(id: Id) -> impl Strategy<Value = WhiteReference> {
-    (of(text()), of(text()), numbers(4), numbers(4), of(number())).prop_map(
-        move |(title, certificate, certified_nm, certified_factor, certified_relative_uncertainty)| WhiteReference {
+fn sample(id: Id) -> impl Strategy<Value = Sample> {
+    let texts = (of(text()), of(text()), of(text()), of(text()));
+    let numbers = (of(finite()), of(finite()), of(finite()));
+    (texts, numbers, of(select(Symmetry::ALL)), any::<bool>()).prop_map(move |(texts, numbers, symmetry, simulated)| {
+        Sample {
             id: id.clone(),
-            title,
-            certificate,
+            title: texts.0,
+            material: texts.1,
+            mark: texts.2,
+            holder: texts.3,
+            width_mm: numbers.0,
+            height_mm: numbers.1,
+            thickness_mm: numbers.2,
+            symmetry,
+            simulated,
+        }
+    })
+}
+
+fn instrument(id: Id) -> impl Strategy<Value = Instrument> {
+    let texts = (of(text()), of(text()), of(text()), of(text()));
+    let numbers = (of(finite()), of(finite()), of(finite()), of(finite()));
+    (texts, numbers, vec(calibration(), 0..3)).prop_map(move |(texts, numbers, calibration)| Instrument {
+        id: id.clone(),
+        model: texts.0,
+        serial: texts.1,
+        aperture: texts.2,
+        accessories: texts.3,
+        distance_mm: numbers.0,
+        visual_field_deg: numbers.1,
+        solid_angle_sr: numbers.2,
+        stray_light_relative: numbers.3,
+        calibration,
+    })
+}
+
+fn white_reference(id: Id) -> impl Strategy<Value = WhiteReference> {
+    let texts = (of(text()), of(text()), of(text()));
+    (texts, numbers(4), numbers(4), of(finite()), vec(calibration(), 0..3)).prop_map(
+        move |(texts, certified_nm, certified_factor, certified_relative_uncertainty, calibration)| WhiteReference {
+            id: id.clone(),
+            title: texts.0,
+            material: texts.1,
+            certificate: texts.2,
             certified_nm,
             certified_factor,
             certified_relative_uncertainty,
+            calibration,
         },
     )
 }
@@ -364,7 +483,12 @@ pub fn document() -> impl Strategy<Value = Document> {
     all.prop_flat_map(|(samples, instruments, lights, references, measurements, models)| {
         let models = if measurements.is_empty() { vec![] } else { models };
         let names = Names { samples, instruments, lights, references, measurements, models };
-        let head = (of(text()), of(text()), of(text()), provenance());
+        let head = (of(text()), of(text()), of(text()), of(text()), provenance());
+        let extensions = vec(name(), 0..2).prop_flat_map(|mut names| {
+            names.sort();
+            names.dedup();
+            names.into_iter().map(|name| extension(name).boxed()).collect::<Vec<_>>()
+        });
         let parts = (
             parts(&names.samples, sample),
             parts(&names.instruments, instrument),
@@ -373,12 +497,13 @@ pub fn document() -> impl Strategy<Value = Document> {
             parts(&names.measurements, |id| measurement(id, &names)),
             parts(&names.models, |id| model(id, &names.measurements)),
         );
-        (head, parts)
+        (head, parts, extensions)
     })
-    .prop_map(|((title, license, citation, provenance), parts)| Document {
+    .prop_map(|((title, license, citation, contact, provenance), parts, extensions)| Document {
         title,
         license,
         citation,
+        contact,
         samples: parts.0,
         instruments: parts.1,
         lights: parts.2,
@@ -386,5 +511,6 @@ pub fn document() -> impl Strategy<Value = Document> {
         measurements: parts.4,
         models: parts.5,
         provenance,
+        extensions,
     })
 }

@@ -28,41 +28,39 @@ pub fn measurement(name: &str, geometries: &[Geometry], columns: usize) -> Measu
     let rows = geometries.len();
     let acquisitions = (0_u32..).zip(geometries).map(|(order, geometry)| Acquisition::at(Some(*geometry), order));
     let nm = (0..columns).map(|column| 380.0 + 4.0 * column as f64).collect();
-    let bandpass = Bandpass::Stated { fwhm_nm: vec![8.0], shape: BandpassShape::Triangular };
+    let bandpass = Bandpass::Stated {
+        fwhm_nm: vec![8.0],
+        shape: BandpassShape::Triangular,
+        correction: BandpassCorrection::Uncorrected,
+    };
     // Four digits, as the instrument gives them.
     let value = |row: usize, column: usize| ((row * 7919 + column * 104_729) % 9973) as f64 / 10_000.0 + 0.001;
     let values = Array2::from_shape_fn((rows, columns), |(row, column)| value(row, column));
-    Measurement {
-        id: id(name),
+    let quantity = Quantity {
+        kind: QuantityKind::RadianceFactor,
+        part: Part::Total,
+        normalised_at: NormalisedAt::Emission,
+        basis: Basis::Energy,
+        reference: Reference::SameGeometry,
+        reference_light: ReferenceLight::Same,
+        certified_factor: vec![0.99],
+    };
+    let emission = EmissionAxis::Wavelengths(WavelengthAxis { nm, bandpass, actual_nm: vec![] });
+    let uncertainty = Uncertainty {
+        standard: Some(values.mapv(|value| value * 0.01)),
+        statement: Statement { evaluation: Some(EvaluationType::A), ..Statement::default() },
+        components: vec![Component::new("certificate", vec![0.005], CorrelatedOver::All)],
+    };
+    let mut measurement = Measurement {
         title: Some("a scan".into()),
-        quantity: Quantity {
-            kind: QuantityKind::RadianceFactor,
-            part: Part::Total,
-            normalised_at: NormalisedAt::Emission,
-            basis: Basis::Energy,
-            reference: Reference::SameGeometry,
-            reference_light: ReferenceLight::Same,
-            certified_factor: vec![0.99],
-        },
-        role: Role::Sample,
         sample: Some(id("paint")),
         instrument: Some(id("pr650")),
         white_reference: Some(id("white")),
-        emission: EmissionAxis::Wavelengths(WavelengthAxis { nm, bandpass }),
-        excitations: vec![],
-        acquisitions: acquisitions.collect(),
-        uncertainty: Uncertainty {
-            standard: Some(values.mapv(|value| value * 0.01)),
-            components: vec![Component {
-                name: "certificate".into(),
-                relative: vec![0.005],
-                correlated_over: CorrelatedOver::All,
-            }],
-        },
-        flags: Array2::zeros((rows, columns)),
-        values,
-        derivation: None,
-    }
+        uncertainty,
+        ..Measurement::new(id(name), Role::Sample, quantity, emission, acquisitions.collect(), values)
+    };
+    measurement.state_directions();
+    measurement
 }
 
 /// A document with one part of every kind.
@@ -75,7 +73,7 @@ pub fn small() -> Document {
         wavelength_nm: Some(375.0),
         fwhm_nm: None,
         filter: Some(String::new()),
-        polarisation: None,
+        ..Excitation::default()
     }];
     for row in &mut raw.acquisitions {
         row.excitation = Some(0);
@@ -99,12 +97,14 @@ pub fn small() -> Document {
         title: Some("Daylight-fluorescent paint, größer als 1: 蛍光".into()),
         license: Some("CC-BY-4.0".into()),
         citation: None,
+        contact: Some("a laboratory".into()),
         samples: vec![Sample {
             id: id("paint"),
             title: Some("orange".into()),
             material: Some(String::new()),
             mark: None,
             simulated: true,
+            ..Sample::default()
         }],
         instruments: vec![Instrument {
             id: id("pr650"),
@@ -112,17 +112,19 @@ pub fn small() -> Document {
             serial: None,
             aperture: None,
             accessories: None,
-            distance_mm: Some(800.0),
+            distance_mm: Some(Finite::try_from(800.0).unwrap()),
+            ..Instrument::default()
         }],
         lights: vec![Light {
             id: id("lamp"),
             title: None,
             spectrum: Some(LightSpectrum {
                 quantity: Quantity::absolute(QuantityKind::RelativeSpectrum, Part::Total),
-                axis: WavelengthAxis { nm: vec![370.0, 380.0], bandpass: Bandpass::Unstated },
+                axis: WavelengthAxis { nm: vec![370.0, 380.0], bandpass: Bandpass::Unstated, actual_nm: vec![] },
                 values: vec![1.0, f64::NAN],
                 flags: vec![0, Flag::NotMeasured.bit()],
             }),
+            ..Light::default()
         }],
         white_references: vec![WhiteReference {
             id: id("white"),
@@ -130,11 +132,13 @@ pub fn small() -> Document {
             certificate: Some("No 1".into()),
             certified_nm: vec![400.0, 500.0],
             certified_factor: vec![0.98, 0.99],
-            certified_relative_uncertainty: Some(0.005),
+            certified_relative_uncertainty: Some(Finite::try_from(0.005).unwrap()),
+            ..WhiteReference::default()
         }],
         measurements: vec![raw, scan],
         models: vec![model(data_digest)],
         provenance: provenance(),
+        extensions: vec![],
     }
 }
 

@@ -57,9 +57,8 @@ pub(crate) fn document() -> Document {
     let sample = Sample {
         id: id("sheet"),
         title: Some("Fluorescence sheet, yellow".to_owned()),
-        material: None,
-        mark: None,
         simulated: true,
+        ..Sample::default()
     };
     let receipt = Receipt {
         tool: "bbrf 0.1.0 import pr650".to_owned(),
@@ -98,30 +97,23 @@ fn measurement() -> Measurement {
     let values = Array2::from_shape_fn((rows.len(), nm.len()), value);
     let geometry = |(i, v): &(f64, f64)| Geometry::from_signed(*i, *v, SignHabit::MirrorAtEqual).ok();
     let shared =
-        Component { name: "certified factor".to_owned(), relative: vec![0.005], correlated_over: CorrelatedOver::All };
+        Component::new("certified factor", vec![0.005], CorrelatedOver::All);
+    let quantity = Quantity {
+        kind: QuantityKind::RadianceFactor,
+        part: Part::Total,
+        normalised_at: NormalisedAt::Emission,
+        basis: Basis::Energy,
+        reference: REFERENCE,
+        reference_light: ReferenceLight::Same,
+        certified_factor: vec![0.99],
+    };
+    let emission = EmissionAxis::Wavelengths(WavelengthAxis::new(nm, Bandpass::Unstated).unwrap());
+    let acquisitions = rows.iter().zip(0..).map(|(angles, order)| Acquisition::at(geometry(angles), order)).collect();
+    let standard = Some(&values * 0.02);
     Measurement {
-        id: id("factor"),
-        title: None,
-        quantity: Quantity {
-            kind: QuantityKind::RadianceFactor,
-            part: Part::Total,
-            normalised_at: NormalisedAt::Emission,
-            basis: Basis::Energy,
-            reference: REFERENCE,
-            reference_light: ReferenceLight::Same,
-            certified_factor: vec![0.99],
-        },
-        role: Role::Sample,
         sample: Some(id("sheet")),
-        instrument: None,
-        white_reference: None,
-        emission: EmissionAxis::Wavelengths(WavelengthAxis::new(nm, Bandpass::Unstated).unwrap()),
-        excitations: Vec::new(),
-        acquisitions: rows.iter().zip(0..).map(|(angles, order)| Acquisition::at(geometry(angles), order)).collect(),
-        flags: Array2::zeros(values.raw_dim()),
-        uncertainty: Uncertainty { standard: Some(&values * 0.02), components: vec![shared] },
-        values,
-        derivation: None,
+        uncertainty: Uncertainty { standard, components: vec![shared], ..Uncertainty::default() },
+        ..Measurement::new(id("factor"), Role::Sample, quantity, emission, acquisitions, values)
     }
 }
 

@@ -3,16 +3,22 @@
 use ndarray::Array2;
 
 use super::super::error::ReadError;
+use super::super::fields::{decode_attributes, decode_fields};
 use super::super::layout::{self, name};
 use super::super::tree::Data;
 use super::parts::{emission_axis, quantity};
-use super::{At, dataset_text, integers, member, numbers, parsed};
-use crate::dataset::{Acquisition, Derivation, Excitation, Id, Measurement};
-use crate::quantity::{Component, Geometry, Uncertainty};
+use super::{At, dataset_text, integers, numbers, parsed};
+use crate::dataset::{Acquisition, Derivation, DirectionTest, Excitation, Id, Measurement};
+use crate::quantity::{Component, Geometry, Statement, Uncertainty};
 
 pub(super) fn measurement(id: Id, at: &At<'_>) -> Result<Measurement, ReadError> {
+    let standard = at.group.dataset(name::VALUE_U);
     let uncertainty = Uncertainty {
-        standard: at.group.dataset(name::VALUE_U).map(|_| matrix(at, name::VALUE_U, numbers)).transpose()?,
+        standard: standard.map(|_| matrix(at, name::VALUE_U, numbers)).transpose()?,
+        statement: standard.map_or_else(
+            || Ok(Statement::default()),
+            |dataset| decode_attributes(&dataset.attributes, &at.member_path(name::VALUE_U)),
+        )?,
         components: components(at)?,
     };
     Ok(Measurement {
@@ -29,6 +35,8 @@ pub(super) fn measurement(id: Id, at: &At<'_>) -> Result<Measurement, ReadError>
         values: matrix(at, name::VALUE, numbers)?,
         flags: matrix(at, name::VALUE_FLAG, integers)?,
         uncertainty,
+        conditions: decode_fields(at.group, &at.path, None)?,
+        direction_tests: direction_tests(at)?,
         derivation: at.child(name::DERIVATION).map(|at| derivation(&at)).transpose()?,
     })
 }
@@ -134,6 +142,15 @@ fn excitations(at: &At<'_>) -> Result<Vec<Excitation>, ReadError> {
     let widths = table.numbers(name::EXCITATION_FWHM)?;
     let filters = table.texts(name::EXCITATION_FILTER, 3)?;
     let polarisations = table.texts(name::EXCITATION_POLARISATION, 4)?;
+    let actual = if at.group.dataset(name::EXCITATION_ACTUAL).is_some() {
+        table.numbers(name::EXCITATION_ACTUAL)?
+    } else {
+        Vec::new()
+    };
+    let shapes = table.texts(name::EXCITATION_SHAPE, 6)?;
+    let corrections = table.texts(name::EXCITATION_CORRECTION, 7)?;
+    let shape_path = at.member_path(name::EXCITATION_SHAPE);
+    let correction_path = at.member_path(name::EXCITATION_CORRECTION);
     let light_path = at.member_path(name::EXCITATION_LIGHT);
     (0..table.masks.len())
         .map(|row| {
@@ -143,6 +160,9 @@ fn excitations(at: &At<'_>) -> Result<Vec<Excitation>, ReadError> {
                 fwhm_nm: table.stated(&widths, row, 2),
                 filter: table.stated(&filters, row, 3),
                 polarisation: table.stated(&polarisations, row, 4),
+                actual_nm: table.stated(&actual, row, 5),
+                shape: table.stated(&shapes, row, 6).map(|name| parsed(&name, &shape_path)).transpose()?,
+                correction: table.stated(&corrections, row, 7).map(|name| parsed(&name, &correction_path)).transpose()?,
             })
         })
         .collect()
@@ -158,10 +178,30 @@ fn components(at: &At<'_>) -> Result<Vec<Component>, ReadError> {
             Ok(Component {
                 name: dataset_text(dataset, name::CAUSE, &path)?,
                 relative: at.numbers(&name)?,
-                correlated_over: member(&over, &format!("{path}@{}", name::CORRELATED_OVER))?,
+                correlated_over: parsed(&over, &format!("{path}@{}", name::CORRELATED_OVER))?,
+                statement: decode_attributes(&dataset.attributes, &path)?,
             })
         })
         .collect()
+}
+
+fn direction_tests(at: &At<'_>) -> Result<Vec<DirectionTest>, ReadError> {
+    if at.group.dataset(name::DIRECTION_TEST_ROW).is_none() {
+        return Ok(Vec::new());
+    }
+    let rows: Vec<u32> = at.integers(name::DIRECTION_TEST_ROW)?;
+    let vectors = |name: &str| {
+        let vectors = matrix(at, name, numbers)?;
+        if vectors.dim() == (rows.len(), 3) {
+            return Ok(vectors);
+        }
+        let found = format!("shape {:?}", vectors.shape());
+        Err(ReadError::unexpected(&at.member_path(name), found, format!("[{}, 3]", rows.len())))
+    };
+    let (incidence, viewing) = (vectors(name::DIRECTION_TEST_INCIDENCE)?, vectors(name::DIRECTION_TEST_VIEWING)?);
+    let vector = |all: &Array2<f64>, row: usize| [all[(row, 0)], all[(row, 1)], all[(row, 2)]];
+    let tests = rows.iter().enumerate();
+    Ok(tests.map(|(i, &row)| DirectionTest { row, incidence: vector(&incidence, i), viewing: vector(&viewing, i) }).collect())
 }
 
 fn derivation(at: &At<'_>) -> Result<Derivation, ReadError> {

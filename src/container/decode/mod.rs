@@ -24,13 +24,15 @@ pub(super) fn decode(root: &Group) -> Result<Document, ReadError> {
         title: root.optional_text(name::TITLE)?,
         license: root.optional_text(name::LICENSE)?,
         citation: root.optional_text(name::CITATION)?,
-        samples: root.list(name::SAMPLE, parts::sample)?,
-        instruments: root.list(name::INSTRUMENT, parts::instrument)?,
+        contact: root.optional_text(name::CONTACT)?,
+        samples: root.list(name::SAMPLE, parts::described)?,
+        instruments: root.list(name::INSTRUMENT, parts::described)?,
         lights: root.list(name::LIGHT, parts::light)?,
         white_references: root.list(name::WHITE_REFERENCE, parts::white_reference)?,
         measurements: root.list(name::MEASUREMENT, measurement::measurement)?,
         models: root.list(name::MODEL, model::model)?,
         provenance: root.child(name::PROVENANCE).map_or_else(|| Ok(Default::default()), |at| parts::provenance(&at))?,
+        extensions: root.child(name::EXTENSION).map_or_else(|| Ok(Vec::new()), |at| parts::extensions(&at))?,
     })
 }
 
@@ -68,9 +70,14 @@ impl<'a> At<'a> {
     /// The groups of a list in the order of their positions.
     fn list<T>(&self, name: &str, decode: impl Fn(Id, &At<'a>) -> Result<T, ReadError>) -> Result<Vec<T>, ReadError> {
         let Some(list) = self.child(name) else { return Ok(Vec::new()) };
+        list.members(decode)
+    }
+
+    /// The groups of this one in the order of their positions.
+    fn members<T>(&self, decode: impl Fn(Id, &At<'a>) -> Result<T, ReadError>) -> Result<Vec<T>, ReadError> {
         let mut positioned = Vec::new();
-        for (id, group) in &list.group.groups {
-            let at = At { path: list.member_path(id), group };
+        for (id, group) in &self.group.groups {
+            let at = At { path: self.member_path(id), group };
             let position: Option<i64> = at.optional_integer(name::POSITION)?;
             let parsed = Id::new(id.as_str()).map_err(|error| {
                 ReadError::unexpected(&at.path, error.to_string(), "a group named by an identifier")
@@ -194,7 +201,7 @@ fn dataset_text(dataset: &Dataset, name: &str, path: &str) -> Result<String, Rea
     dataset.attributes.get(name).ok_or_else(|| ReadError::missing(&path, "a text")).and_then(|array| text(array, &path))
 }
 
-fn text(array: &Array, path: &str) -> Result<String, ReadError> {
+pub(super) fn text(array: &Array, path: &str) -> Result<String, ReadError> {
     match (&array.data, array.as_text()) {
         (_, Some(text)) => Ok(text.to_owned()),
         // netCDF writes an empty text as an array without elements.
@@ -211,13 +218,7 @@ fn parsed<T: FromStr<Err: std::fmt::Display>>(text: &str, path: &str) -> Result<
     text.parse().map_err(|error: T::Err| ReadError::unexpected(path, format!("`{text}`"), error.to_string()))
 }
 
-/// A member of a closed list that is spelled by serde.
-fn member<T: DeserializeOwned>(text: &str, path: &str) -> Result<T, ReadError> {
-    serde_json::from_value(serde_json::Value::String(text.to_owned()))
-        .map_err(|error| ReadError::unexpected(path, format!("`{text}`"), error.to_string()))
-}
-
-fn attribute_number(array: &Array, path: &str) -> Result<f64, ReadError> {
+pub(super) fn attribute_number(array: &Array, path: &str) -> Result<f64, ReadError> {
     match numbers(&array.data, path)?.as_slice() {
         [one] => Ok(*one),
         other => Err(ReadError::unexpected(path, format!("{} numbers", other.len()), "one number")),

@@ -1,35 +1,23 @@
 //! Samples, instruments, lights, white references, provenance; the emission axis and the quantity.
 
+use schemars::JsonSchema;
+use serde::de::DeserializeOwned;
+
 use super::super::error::ReadError;
-use super::super::layout::name;
-use super::{At, attribute_number, dataset_text, member, parsed};
-use crate::dataset::{Id, Instrument, Light, LightSpectrum, Provenance, Sample, WhiteReference};
-use crate::quantity::{Band, Bandpass, EmissionAxis, Quantity, WavelengthAxis};
+use super::super::fields::decode_fields;
+use super::super::layout::{is_outside_digest, name};
+use super::super::tree::{Attributes, Dataset, Group};
+use super::{At, attribute_number, dataset_text, parsed};
+use crate::dataset::{Extension, Id, Light, LightSpectrum, Provenance, WhiteReference};
+use crate::quantity::{Band, Bandpass, BandpassCorrection, EmissionAxis, Quantity, WavelengthAxis};
 
-pub(super) fn sample(id: Id, at: &At<'_>) -> Result<Sample, ReadError> {
-    Ok(Sample {
-        id,
-        title: at.optional_text(name::TITLE)?,
-        material: at.optional_text(name::MATERIAL)?,
-        mark: at.optional_text(name::MARK)?,
-        simulated: at.truth(name::SIMULATED)?,
-    })
-}
-
-pub(super) fn instrument(id: Id, at: &At<'_>) -> Result<Instrument, ReadError> {
-    Ok(Instrument {
-        id,
-        model: at.optional_text(name::MODEL_NAME)?,
-        serial: at.optional_text(name::SERIAL)?,
-        aperture: at.optional_text(name::APERTURE)?,
-        accessories: at.optional_text(name::ACCESSORIES)?,
-        distance_mm: at.optional_number(name::DISTANCE_MM)?,
-    })
+pub(super) fn described<T: DeserializeOwned + JsonSchema>(id: Id, at: &At<'_>) -> Result<T, ReadError> {
+    decode_fields(at.group, &at.path, Some(id.as_str()))
 }
 
 pub(super) fn light(id: Id, at: &At<'_>) -> Result<Light, ReadError> {
     let spectrum = at.group.dataset(name::VALUE).map(|_| light_spectrum(at)).transpose()?;
-    Ok(Light { id, title: at.optional_text(name::TITLE)?, spectrum })
+    Ok(Light { spectrum, ..described(id, at)? })
 }
 
 fn light_spectrum(at: &At<'_>) -> Result<LightSpectrum, ReadError> {
@@ -43,13 +31,29 @@ fn light_spectrum(at: &At<'_>) -> Result<LightSpectrum, ReadError> {
 
 pub(super) fn white_reference(id: Id, at: &At<'_>) -> Result<WhiteReference, ReadError> {
     Ok(WhiteReference {
-        id,
-        title: at.optional_text(name::TITLE)?,
-        certificate: at.optional_text(name::CERTIFICATE)?,
         certified_nm: at.numbers_or_none(name::CERTIFIED_WAVELENGTH)?,
         certified_factor: at.numbers_or_none(name::CERTIFIED_FACTOR)?,
-        certified_relative_uncertainty: at.optional_number(name::CERTIFIED_RELATIVE_U)?,
+        ..described(id, at)?
     })
+}
+
+pub(super) fn extensions(at: &At<'_>) -> Result<Vec<Extension>, ReadError> {
+    at.members(|domain, at| Ok(Extension { domain, content: without_foreign(at.group) }))
+}
+
+/// Without what other programs add when they copy a file.
+fn without_foreign(group: &Group) -> Group {
+    let own = |attributes: &Attributes| {
+        attributes.iter().filter(|(name, _)| !is_outside_digest(name)).map(|(name, array)| (name.clone(), array.clone())).collect()
+    };
+    let datasets = group.datasets.iter().map(|(name, dataset)| {
+        (name.clone(), Dataset { attributes: own(&dataset.attributes), ..Dataset::new(dataset.array.clone()) })
+    });
+    Group {
+        attributes: own(&group.attributes),
+        datasets: datasets.collect(),
+        groups: group.groups.iter().map(|(name, group)| (name.clone(), without_foreign(group))).collect(),
+    }
 }
 
 pub(super) fn provenance(at: &At<'_>) -> Result<Provenance, ReadError> {
@@ -82,10 +86,21 @@ fn wavelength_axis(at: &At<'_>) -> Result<WavelengthAxis, ReadError> {
         Some(dataset) => {
             let path = at.member_path(name::FWHM);
             let shape = dataset_text(dataset, name::SHAPE, &path)?;
-            Bandpass::Stated { fwhm_nm: at.numbers(name::FWHM)?, shape: member(&shape, &path)? }
+            Bandpass::Stated {
+                fwhm_nm: at.numbers(name::FWHM)?,
+                shape: parsed(&shape, &format!("{path}@{}", name::SHAPE))?,
+                correction: match dataset.attributes.get(name::CORRECTION) {
+                    None => BandpassCorrection::Unstated,
+                    Some(_) => parsed(&dataset_text(dataset, name::CORRECTION, &path)?, &format!("{path}@{}", name::CORRECTION))?,
+                },
+            }
         }
     };
-    Ok(WavelengthAxis { nm: at.numbers(name::WAVELENGTH)?, bandpass })
+    Ok(WavelengthAxis {
+        nm: at.numbers(name::WAVELENGTH)?,
+        bandpass,
+        actual_nm: at.numbers_or_none(name::WAVELENGTH_ACTUAL)?,
+    })
 }
 
 /// The quantity of the values of a group.

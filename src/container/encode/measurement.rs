@@ -3,12 +3,12 @@
 use ndarray::Array2;
 
 use super::super::error::EncodeError;
+use super::super::fields::{encode_attributes, encode_fields};
 use super::super::layout::{self, name};
 use super::super::tree::{Array, Data, Dataset, Group};
-use super::member_name;
-use super::parts::{certified_factor, emission_axis, quantity, value_flags};
-use crate::dataset::{Acquisition, Derivation, Excitation, Id, Measurement};
-use crate::quantity::{Component, Geometry};
+use super::parts::{certified_factor, emission_axis, quantity, si_unit, value_flags};
+use crate::dataset::{Acquisition, Derivation, DirectionTest, Excitation, Id, Measurement};
+use crate::quantity::{BandpassCorrection, BandpassShape, Component, Geometry};
 
 /// The group of a measurement, without its position.
 pub(in super::super) fn encode_measurement(measurement: &Measurement) -> Result<Group, EncodeError> {
@@ -19,6 +19,7 @@ pub(in super::super) fn encode_measurement(measurement: &Measurement) -> Result<
     group.optional_id(name::SAMPLE, measurement.sample.as_ref())?;
     group.optional_id(name::INSTRUMENT, measurement.instrument.as_ref())?;
     group.optional_id(name::WHITE_REFERENCE, measurement.white_reference.as_ref())?;
+    encode_fields(&mut group, &measurement.conditions)?;
     group.index_scale(name::ACQUISITION, measurement.acquisitions.len());
     let emission = emission_axis(&mut group, &measurement.emission)?;
     rows(&mut group, &measurement.acquisitions)?;
@@ -26,6 +27,7 @@ pub(in super::super) fn encode_measurement(measurement: &Measurement) -> Result<
     certified_factor(&mut group, &measurement.quantity, emission);
     values(&mut group, measurement, emission)?;
     components(&mut group, &measurement.uncertainty.components, emission)?;
+    direction_tests(&mut group, &measurement.direction_tests);
     if let Some(derivation) = &measurement.derivation {
         group.groups.push((name::DERIVATION.to_owned(), derived_from(derivation)?));
     }
@@ -89,6 +91,9 @@ fn excitations(group: &mut Group, states: &[Excitation]) -> Result<(), EncodeErr
             state.fwhm_nm.is_some(),
             state.filter.is_some(),
             state.polarisation.is_some(),
+            state.actual_nm.is_some(),
+            state.shape.is_some(),
+            state.correction.is_some(),
         ];
         bits(known)
     });
@@ -97,7 +102,7 @@ fn excitations(group: &mut Group, states: &[Excitation]) -> Result<(), EncodeErr
     group
         .vector(name::EXCITATION_WAVELENGTH, optional_numbers(states.iter().map(|state| state.wavelength_nm)), axis)
         .unit("nm")
-        .long_name("centre of the excitation in air");
+        .long_name("nominal centre of the excitation in air");
     group
         .vector(name::EXCITATION_FWHM, optional_numbers(states.iter().map(|state| state.fwhm_nm)), axis)
         .unit("nm")
@@ -106,6 +111,14 @@ fn excitations(group: &mut Group, states: &[Excitation]) -> Result<(), EncodeErr
     group.texts(name::EXCITATION_LIGHT, lights, axis)?;
     let filters = states.iter().map(|state| state.filter.as_deref().unwrap_or(""));
     group.texts(name::EXCITATION_FILTER, filters, axis)?;
+    group
+        .vector(name::EXCITATION_ACTUAL, optional_numbers(states.iter().map(|state| state.actual_nm)), axis)
+        .unit("nm")
+        .long_name("centre of the excitation as calibrated");
+    let shapes = states.iter().map(|state| state.shape.map_or("", BandpassShape::name));
+    group.texts(name::EXCITATION_SHAPE, shapes, axis)?;
+    let corrections = states.iter().map(|state| state.correction.map_or("", BandpassCorrection::name));
+    group.texts(name::EXCITATION_CORRECTION, corrections, axis)?;
     let polarisations = states.iter().map(|state| state.polarisation.as_deref().unwrap_or(""));
     group.texts(name::EXCITATION_POLARISATION, polarisations, axis)?;
     Ok(())
@@ -129,6 +142,8 @@ fn values(group: &mut Group, measurement: &Measurement, emission: &str) -> Resul
         uncertainty
             .unit(measurement.quantity.kind.unit())
             .long_name("standard uncertainty (k = 1), independent between values");
+        si_unit(uncertainty, measurement.quantity.kind);
+        encode_attributes(&mut uncertainty.attributes, &measurement.uncertainty.statement)?;
     }
     group.put(name::VALUE_FLAG, matrix(Data::U16(row_major(&measurement.flags))));
     value_flags(group);
@@ -138,13 +153,34 @@ fn values(group: &mut Group, measurement: &Measurement, emission: &str) -> Resul
 /// Uncertainty that values share, one vector for each cause.
 fn components(group: &mut Group, components: &[Component], emission: &str) -> Result<(), EncodeError> {
     for (position, component) in components.iter().enumerate() {
-        let over = member_name(&component.correlated_over)?;
         let name = format!("{}{position}", name::COMPONENT);
         let dataset = group.vector(&name, Data::F64(component.relative.clone()), emission);
         dataset.unit("1").long_name("relative standard uncertainty shared between values");
-        dataset.checked_text(name::CAUSE, &component.name)?.checked_text(name::CORRELATED_OVER, &over)?;
+        dataset.checked_text(name::CAUSE, &component.name)?.checked_text(name::CORRELATED_OVER, component.correlated_over.name())?;
+        encode_attributes(&mut dataset.attributes, &component.statement)?;
     }
     Ok(())
+}
+
+/// Directions of some rows a second time, as unit vectors.
+fn direction_tests(group: &mut Group, tests: &[DirectionTest]) {
+    if tests.is_empty() {
+        return;
+    }
+    group.index_scale(name::DIRECTION_TEST, tests.len());
+    group.index_scale(name::XYZ, 3);
+    let rows = Data::U32(tests.iter().map(|test| test.row).collect());
+    group.vector(name::DIRECTION_TEST_ROW, rows, name::DIRECTION_TEST).long_name("row of the measurement");
+    let vectors: [(&str, &str, fn(&DirectionTest) -> [f64; 3]); 2] = [
+        (name::DIRECTION_TEST_INCIDENCE, "unit vector from the surface to the source", |test| test.incidence),
+        (name::DIRECTION_TEST_VIEWING, "unit vector from the surface to the detector", |test| test.viewing),
+    ];
+    for (name, long_name, vector) in vectors {
+        let data = Data::F64(tests.iter().flat_map(vector).collect());
+        let axes = vec![name::DIRECTION_TEST.to_owned(), name::XYZ.to_owned()];
+        let array = Array { shape: vec![tests.len(), 3], data };
+        group.put(name, Dataset { axes, ..Dataset::new(array) }).unit("1").long_name(long_name);
+    }
 }
 
 fn derived_from(derivation: &Derivation) -> Result<Group, EncodeError> {

@@ -1,5 +1,6 @@
 //! A document as a [`Tree`](Group). It faces `decode`, which has the same files.
 
+mod extension;
 mod measurement;
 mod model;
 mod parts;
@@ -21,13 +22,17 @@ pub(super) fn encode(document: &Document) -> Result<Group, EncodeError> {
     root.optional_text(name::TITLE, document.title.as_ref())?;
     root.optional_text(name::LICENSE, document.license.as_ref())?;
     root.optional_text(name::CITATION, document.citation.as_ref())?;
-    root.list(name::SAMPLE, &document.samples, |part| (&part.id, parts::sample(part)))?;
-    root.list(name::INSTRUMENT, &document.instruments, |part| (&part.id, parts::instrument(part)))?;
+    root.optional_text(name::CONTACT, document.contact.as_ref())?;
+    root.list(name::SAMPLE, &document.samples, |part| (&part.id, parts::described(part)))?;
+    root.list(name::INSTRUMENT, &document.instruments, |part| (&part.id, parts::described(part)))?;
     root.list(name::LIGHT, &document.lights, |part| (&part.id, parts::light(part)))?;
     root.list(name::WHITE_REFERENCE, &document.white_references, |part| (&part.id, parts::white_reference(part)))?;
     root.list(name::MEASUREMENT, &document.measurements, |part| (&part.id, encode_measurement(part)))?;
     root.list(name::MODEL, &document.models, |part| (&part.id, model::model(part)))?;
     root.groups.push((name::PROVENANCE.to_owned(), parts::provenance(&document.provenance)?));
+    if !document.extensions.is_empty() {
+        root.groups.push((name::EXTENSION.to_owned(), extension::extensions(&document.extensions)?));
+    }
     Ok(root)
 }
 
@@ -48,12 +53,6 @@ impl Group {
 
     fn attribute(&mut self, name: &str, data: Data) {
         self.attributes.insert(name.to_owned(), Array::scalar(data));
-    }
-
-    fn optional_number(&mut self, name: &str, number: Option<f64>) {
-        if let Some(number) = number {
-            self.attribute(name, Data::F64(vec![number]));
-        }
     }
 
     /// A list of parts, each a group under its id that knows its position in the list.
@@ -155,7 +154,7 @@ impl Dataset {
 }
 
 /// HDF5 strings end at U+0000, so no text may hold it.
-fn without_nul(text: &str) -> Result<String, EncodeError> {
+pub(super) fn without_nul(text: &str) -> Result<String, EncodeError> {
     if text.contains('\0') { Err(DocumentError::NulInText(text.to_owned()).into()) } else { Ok(text.to_owned()) }
 }
 
@@ -165,15 +164,6 @@ fn json_without_nul(value: &serde_json::Value) -> Result<(), EncodeError> {
         serde_json::Value::Array(values) => values.iter().try_for_each(json_without_nul),
         serde_json::Value::Object(members) => members.values().try_for_each(json_without_nul),
         _ => Ok(()),
-    }
-}
-
-/// The name of a member of a closed list, which is its JSON form.
-fn member_name<T: Serialize>(member: &T) -> Result<String, EncodeError> {
-    match serde_json::to_value(member) {
-        Ok(serde_json::Value::String(text)) => Ok(text),
-        Ok(other) => Err(EncodeError::NotReadBack(format!("{other} is not a name"))),
-        Err(source) => Err(EncodeError::Json { path: String::new(), source }),
     }
 }
 

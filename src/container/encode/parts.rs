@@ -1,35 +1,25 @@
 //! Samples, instruments, lights, white references, provenance; and what several parts share: the emission axis and the
 //! quantity.
 
+use serde::Serialize;
+
 use super::super::error::EncodeError;
+use super::super::fields::encode_fields;
 use super::super::layout::name;
-use super::super::tree::{Data, Dataset, Group};
-use super::{faithful, member_name, without_nul};
-use crate::dataset::{Instrument, Light, LightSpectrum, Provenance, Sample, WhiteReference};
-use crate::quantity::{Bandpass, EmissionAxis, Flag, Quantity, WavelengthAxis};
+use super::super::tree::{Array, Data, Dataset, Group};
+use super::{faithful, without_nul};
+use crate::dataset::{Light, LightSpectrum, Provenance, WhiteReference};
+use crate::quantity::{Bandpass, EmissionAxis, Flag, Quantity, QuantityKind, WavelengthAxis};
 
-pub(super) fn sample(sample: &Sample) -> Result<Group, EncodeError> {
+pub(super) fn described(part: &impl Serialize) -> Result<Group, EncodeError> {
     let mut group = Group::default();
-    group.optional_text(name::TITLE, sample.title.as_ref())?;
-    group.optional_text(name::MATERIAL, sample.material.as_ref())?;
-    group.optional_text(name::MARK, sample.mark.as_ref())?;
-    group.attribute(name::SIMULATED, Data::U8(vec![u8::from(sample.simulated)]));
-    Ok(group)
-}
-
-pub(super) fn instrument(instrument: &Instrument) -> Result<Group, EncodeError> {
-    let mut group = Group::default();
-    group.optional_text(name::MODEL_NAME, instrument.model.as_ref())?;
-    group.optional_text(name::SERIAL, instrument.serial.as_ref())?;
-    group.optional_text(name::APERTURE, instrument.aperture.as_ref())?;
-    group.optional_text(name::ACCESSORIES, instrument.accessories.as_ref())?;
-    group.optional_number(name::DISTANCE_MM, instrument.distance_mm);
+    encode_fields(&mut group, part)?;
     Ok(group)
 }
 
 pub(super) fn light(light: &Light) -> Result<Group, EncodeError> {
-    let mut group = Group::default();
-    group.optional_text(name::TITLE, light.title.as_ref())?;
+    // The spectrum has attributes of the same names; it is an array and not a description.
+    let mut group = described(&Light { spectrum: None, ..light.clone() })?;
     if let Some(spectrum) = &light.spectrum {
         light_spectrum(&mut group, spectrum)?;
     }
@@ -48,10 +38,7 @@ fn light_spectrum(group: &mut Group, spectrum: &LightSpectrum) -> Result<(), Enc
 }
 
 pub(super) fn white_reference(reference: &WhiteReference) -> Result<Group, EncodeError> {
-    let mut group = Group::default();
-    group.optional_text(name::TITLE, reference.title.as_ref())?;
-    group.optional_text(name::CERTIFICATE, reference.certificate.as_ref())?;
-    group.optional_number(name::CERTIFIED_RELATIVE_U, reference.certified_relative_uncertainty);
+    let mut group = described(reference)?;
     if !reference.certified_nm.is_empty() {
         group.scale(name::CERTIFIED_WAVELENGTH, &reference.certified_nm, "nm", "wavelength in air");
     }
@@ -83,7 +70,7 @@ pub(super) fn emission_axis(group: &mut Group, axis: &EmissionAxis) -> Result<&'
             group.index_scale(name::BAND, 1);
             if let (Some(band), Some(scale)) = (band, group.dataset_mut(name::BAND)) {
                 for (name, end) in [(name::FROM_NM, band.from_nm), (name::TO_NM, band.to_nm)] {
-                    let end = super::Array::scalar(Data::F64(vec![end]));
+                    let end = Array::scalar(Data::F64(vec![end]));
                     scale.attributes.insert(name.to_owned(), end);
                 }
             }
@@ -93,12 +80,17 @@ pub(super) fn emission_axis(group: &mut Group, axis: &EmissionAxis) -> Result<&'
 }
 
 fn wavelength_axis(group: &mut Group, axis: &WavelengthAxis) -> Result<(), EncodeError> {
-    group.scale(name::WAVELENGTH, &axis.nm, "nm", "emission wavelength in air");
-    if let Bandpass::Stated { fwhm_nm, shape } = &axis.bandpass {
-        let shape = member_name(shape)?;
+    group.scale(name::WAVELENGTH, &axis.nm, "nm", "nominal emission wavelength in air");
+    if !axis.actual_nm.is_empty() {
+        group
+            .vector(name::WAVELENGTH_ACTUAL, Data::F64(axis.actual_nm.clone()), name::WAVELENGTH)
+            .unit("nm")
+            .long_name("centre of the bandpass as calibrated");
+    }
+    if let Bandpass::Stated { fwhm_nm, shape, correction } = &axis.bandpass {
         let fwhm = group.vector(name::FWHM, Data::F64(fwhm_nm.clone()), name::WAVELENGTH);
         fwhm.unit("nm").long_name("full width at half maximum of the instrument");
-        fwhm.checked_text(name::SHAPE, &shape)?;
+        fwhm.checked_text(name::SHAPE, shape.name())?.checked_text(name::CORRECTION, correction.name())?;
     }
     Ok(())
 }
@@ -106,6 +98,7 @@ fn wavelength_axis(group: &mut Group, axis: &WavelengthAxis) -> Result<(), Encod
 /// What the values of a dataset mean, as its attributes.
 pub(super) fn quantity(dataset: &mut Dataset, quantity: &Quantity) -> Result<(), EncodeError> {
     dataset.unit(quantity.kind.unit()).long_name(quantity.kind.name());
+    si_unit(dataset, quantity.kind);
     dataset.checked_text(name::QUANTITY, quantity.kind.name())?;
     dataset.checked_text(name::PART, quantity.part.name())?;
     dataset.checked_text(name::NORMALISED_AT, quantity.normalised_at.name())?;
@@ -114,6 +107,15 @@ pub(super) fn quantity(dataset: &mut Dataset, quantity: &Quantity) -> Result<(),
     let light = faithful(name::REFERENCE_LIGHT, &quantity.reference_light)?;
     dataset.checked_text(name::REFERENCE_LIGHT, &without_nul(&light)?)?;
     Ok(())
+}
+
+/// The unit once more as a factor and exponents, so that no program has to parse a text.
+pub(super) fn si_unit(dataset: &mut Dataset, kind: QuantityKind) {
+    if let Some(unit) = kind.si_unit() {
+        let mut put = |name: &str, array| dataset.attributes.insert(name.to_owned(), array);
+        put(name::SI_FACTOR, Array::scalar(Data::F64(vec![unit.factor])));
+        put(name::SI_EXPONENTS, Array::vector(Data::I8(unit.exponents.to_vec())));
+    }
 }
 
 pub(super) fn certified_factor(group: &mut Group, quantity: &Quantity, axis: &str) {

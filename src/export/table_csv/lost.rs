@@ -35,7 +35,7 @@ pub(super) fn lost(document: &Document, measurement: &Measurement) -> Vec<String
 
 fn emission(measurement: &Measurement, note: &mut impl FnMut(bool, String)) {
     if let EmissionAxis::Wavelengths(axis) = &measurement.emission
-        && let Bandpass::Stated { fwhm_nm, shape } = &axis.bandpass
+        && let Bandpass::Stated { fwhm_nm, shape, .. } = &axis.bandpass
     {
         let several = one_bandpass(&axis.bandpass).is_none();
         note(several, format!("the bandpass of {} wavelengths", fwhm_nm.len()));

@@ -1,10 +1,13 @@
-//! What an HDF5 file holds, as values: groups, datasets, attributes. Everything between a document and a file passes
-//! through it, so that neither the layout knows libhdf5 nor the libraries know the layout.
+//! Groups, datasets and attributes as plain values: what an extension holds, and what everything between a document and
+//! a file passes through, so that neither the layout knows the libraries nor the libraries the layout.
 
 use std::collections::BTreeMap;
 
+use serde::{Deserialize, Serialize};
+
 /// The values of an array, in row-major order.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(rename_all = "lowercase")]
 #[allow(missing_docs)]
 pub enum Data {
     U8(Vec<u8>),
@@ -101,7 +104,7 @@ impl Data {
 }
 
 /// An array with its shape; a scalar has none.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Array {
     /// Lengths of the axes.
     pub shape: Vec<usize>,
@@ -157,7 +160,7 @@ impl Array {
 pub type Attributes = BTreeMap<String, Array>;
 
 /// A dataset.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Dataset {
     /// Shape and values.
     pub array: Array,
@@ -185,7 +188,7 @@ impl Dataset {
 }
 
 /// A group; members keep their order.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Group {
     /// Attributes.
     pub attributes: Attributes,
