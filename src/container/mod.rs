@@ -12,6 +12,7 @@
 mod decode;
 mod digest;
 mod encode;
+mod encoding;
 mod error;
 mod fields;
 pub mod layout;
@@ -26,6 +27,7 @@ pub use crate::dataset::tree;
 mod write;
 
 pub use digest::{Digest, digest, measurement_digest};
+pub use encoding::{Construct, Encoded};
 pub use error::{EncodeError, ReadError, WriteError};
 pub use limits::Limits;
 pub use open::{Inspection, Mismatch, Opened, inspect, open_verified, read_bytes, read_file};

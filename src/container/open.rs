@@ -6,6 +6,7 @@ use std::path::Path;
 use super::decode::decode;
 use super::digest::{Digest, of_objects, of_tree};
 use super::encode::encode;
+use super::encoding::Encoded;
 use super::error::ReadError;
 use super::layout::{self, is_outside_digest, name};
 use super::limits::Limits;
@@ -66,6 +67,8 @@ pub struct Inspection {
     pub computed_digest: Option<Digest>,
     /// Content that the standard does not know.
     pub unknown: Vec<String>,
+    /// Encodings that the standard does not use and some reader cannot read.
+    pub unusual: Vec<Encoded>,
     /// What differs from how the document would be written.
     pub mismatches: Vec<Mismatch>,
 }
@@ -75,7 +78,7 @@ pub struct Inspection {
 /// # Errors
 /// [`ReadError`] when the bytes are no HDF5, damaged, or beyond the limits.
 pub fn inspect(bytes: &[u8], limits: &Limits) -> Result<Inspection, ReadError> {
-    let tree = from_bytes(bytes, limits)?;
+    let (tree, unusual) = from_bytes(bytes, limits)?;
     let document = decode(&tree);
     let stored_digest = stored_text(&tree.attributes, name::DIGEST);
     let canonical = document.as_ref().ok().and_then(|document| encode(document).ok());
@@ -84,7 +87,7 @@ pub fn inspect(bytes: &[u8], limits: &Limits) -> Result<Inspection, ReadError> {
         (Some(canonical), Some(digest)) => mismatches(&tree, canonical, digest, stored_digest.as_deref()),
         _ => Vec::new(),
     };
-    Ok(Inspection { unknown: unknown(&tree), tree, document, stored_digest, computed_digest, mismatches })
+    Ok(Inspection { unusual, unknown: unknown(&tree), tree, document, stored_digest, computed_digest, mismatches })
 }
 
 /// Something in a file that is not as its document would be written.

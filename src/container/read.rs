@@ -6,19 +6,21 @@ use std::collections::HashSet;
 use std::sync::Arc;
 
 use hdf5_reader::error::Error;
+use hdf5_reader::messages::link::LinkTarget;
 use hdf5_reader::{Attribute, Datatype, Hdf5File, OpenOptions, StringSize};
 
+use super::encoding::{self, Construct, Encoded};
 use super::error::ReadError;
 use super::limits::Limits;
 use super::links;
 use super::tree::{Array, Attributes, Data, Dataset, Group};
 use crate::dataset::Place;
 
-/// The tree of a file.
+/// The tree of a file, with what is unusual in its encoding.
 ///
 /// # Errors
 /// [`ReadError`] when the bytes are no HDF5, damaged, or beyond the limits.
-pub(super) fn from_bytes(bytes: &[u8], limits: &Limits) -> Result<Group, ReadError> {
+pub(super) fn from_bytes(bytes: &[u8], limits: &Limits) -> Result<(Group, Vec<Encoded>), ReadError> {
     let size = bytes.len() as u64;
     within("bytes", size, limits.file_bytes, "/")?;
     let decoded = limits.decoded_bytes(size);
@@ -32,8 +34,11 @@ pub(super) fn from_bytes(bytes: &[u8], limits: &Limits) -> Result<Group, ReadErr
     let file = Hdf5File::from_shared_bytes_with_options(Arc::from(bytes), options)
         .map_err(|error| ReadError::encoding("/", error))?;
     let root = file.root_group().map_err(|error| ReadError::encoding("/", error))?;
-    let mut walk = Walk { limits, decoded_left: decoded, objects: 0, decoded_limit: decoded };
-    walk.group(&root, "", 0)
+    let mut unusual = Vec::new();
+    encoding::of_file(&file, &mut unusual);
+    let mut walk = Walk { file: &file, limits, decoded_left: decoded, objects: 0, decoded_limit: decoded, unusual };
+    let tree = walk.group(&root, "", 0)?;
+    Ok((tree, walk.unusual))
 }
 
 fn within(what: &'static str, found: u64, limit: u64, path: &str) -> Result<(), ReadError> {
@@ -44,6 +49,8 @@ fn within(what: &'static str, found: u64, limit: u64, path: &str) -> Result<(), 
 }
 
 struct Walk<'a> {
+    file: &'a Hdf5File,
+    unusual: Vec<Encoded>,
     limits: &'a Limits,
     decoded_limit: u64,
     decoded_left: u64,
@@ -56,6 +63,8 @@ impl Walk<'_> {
         let failed = |error: Error| ReadError::encoding(shown, error);
         within("levels of groups", depth as u64, self.limits.depth as u64, shown)?;
         self.count(1, shown)?;
+        let header = self.file.get_or_parse_header(group.address()).map_err(failed)?;
+        encoding::of_group(&header, shown, &mut self.unusual);
         let mut tree =
             Group { attributes: self.attributes(&group.attributes().map_err(failed)?, shown)?, ..Group::default() };
         let (groups, datasets) = group.members().map_err(failed)?;
@@ -63,12 +72,11 @@ impl Walk<'_> {
             datasets.iter().map(|d| last_name(d.name())).chain(groups.iter().map(|g| last_name(g.name()))).collect();
         let most = usize::try_from(self.decoded_limit).unwrap_or(usize::MAX);
         if let Some(link) = links::dangling(group, |name| names.contains(name), most).map_err(failed)? {
-            let path = format!("{path}/{}", link.name);
-            return Err(ReadError::unexpected(
-                &path,
-                "a soft link that leads nowhere",
-                "a link to what is in the file",
-            ));
+            let target = match link.target {
+                LinkTarget::Soft { path } => path,
+                _ => String::new(),
+            };
+            self.unusual.push((format!("{path}/{}", link.name), Construct::DanglingLink(target)));
         }
         for dataset in &datasets {
             let name = last_name(dataset.name());
@@ -87,7 +95,13 @@ impl Walk<'_> {
         self.count(1, path)?;
         let attributes = self.attributes(&dataset.attributes(), path)?;
         let shape = lengths(dataset.shape(), path)?;
-        let data = self.values(dataset, path)?;
+        let header = self.file.get_or_parse_header(dataset.address()).map_err(|error| ReadError::encoding(path, error))?;
+        encoding::of_dataset(dataset, &header, path, &mut self.unusual);
+        let foreign = encoding::filters(&header);
+        let data = match foreign.first() {
+            Some(filter) => Data::Other(format!("what filter {filter} made of it")),
+            None => self.values(dataset, path)?,
+        };
         let is_scale = attributes.get("CLASS").and_then(Array::as_text) == Some("DIMENSION_SCALE");
         Ok(Dataset { attributes, is_scale, ..Dataset::new(Array { shape, data }) })
     }
@@ -117,6 +131,7 @@ impl Walk<'_> {
 
     fn attributes(&mut self, attributes: &[Attribute], path: &str) -> Result<Attributes, ReadError> {
         self.count(attributes.len() as u64, path)?;
+        encoding::of_attributes(attributes, path, &mut self.unusual);
         let read = |attribute: &Attribute| {
             let path = format!("{path}@{}", attribute.name);
             Ok((attribute.name.clone(), attribute_array(attribute, &path)?))

@@ -47,6 +47,9 @@ pub struct Finding {
     pub expected: String,
     /// What to do.
     pub advice: String,
+    /// For a departure from physics: how many standard uncertainties it is.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub z: Option<f64>,
 }
 
 /// The result of validating one file.
@@ -100,14 +103,24 @@ impl Finder {
 
     /// Adds a finding.
     pub fn add(&mut self, place: Place, found: impl Into<String>, expected: impl Into<String>) {
+        self.push(place, found.into(), expected.into(), None);
+    }
+
+    /// Adds a finding with its z-score.
+    pub(super) fn add_scored(&mut self, place: Place, found: String, expected: &str, z: f64) {
+        self.push(place, found, expected.to_owned(), Some(z));
+    }
+
+    fn push(&mut self, place: Place, found: String, expected: String, z: Option<f64>) {
         self.findings.push(Finding {
             rule: self.rule.id,
             alias: self.rule.alias,
             severity: self.rule.severity,
             place,
-            found: found.into(),
-            expected: expected.into(),
+            found,
+            expected,
             advice: self.rule.repair.to_owned(),
+            z,
         });
     }
 }

@@ -8,12 +8,13 @@ mod context;
 mod finding;
 mod registry;
 mod rules;
+mod significance;
 
 use crate::container::{Limits, inspect};
 
 pub use context::Context;
 pub use finding::{Finding, Report, Severity, Status};
-pub use registry::{RULES, Rule, rule};
+pub use registry::{CLAUSES, RULES, Rule, rule};
 
 /// Validates the bytes of a file.
 #[must_use]

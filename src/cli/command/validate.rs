@@ -118,6 +118,7 @@ fn not_read(file: &str, error: &std::io::Error) -> Report {
         found: format!("cannot be read: {error}"),
         expected: "a readable file".to_owned(),
         advice: "Check the name and the permissions.".to_owned(),
+        z: None,
     });
     Report { digest: None, readable: false, findings: finding.into_iter().collect() }
 }

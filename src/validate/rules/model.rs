@@ -4,7 +4,7 @@ use super::super::Context;
 use super::super::finding::Finder;
 use crate::container::layout::name;
 use crate::container::measurement_digest;
-use crate::dataset::{Model, Place};
+use crate::dataset::{Model, Place, Reduction, reduce};
 
 fn models<'a>(context: &Context<'a>) -> impl Iterator<Item = (String, &'a Model)> {
     let models = context.document().map_or(&[][..], |document| &document.models);
@@ -84,5 +84,81 @@ pub(in super::super) fn parameter_bounds(context: &Context<'_>, found: &mut Find
 pub(in super::super) fn not_converged(context: &Context<'_>, found: &mut Finder) {
     for (path, model) in models(context).filter(|(_, model)| !model.converged) {
         found.add(Place::path(format!("{path}@{}", name::CONVERGED)), model.method.as_str(), "a fit that converged");
+    }
+}
+
+/// Numbers of a model computed elsewhere agree to this: another order of sums, another cosine.
+const RECOMPUTED: f64 = 1e-6;
+
+pub(in super::super) fn residuals(context: &Context<'_>, found: &mut Finder) {
+    let Some(document) = context.document() else { return };
+    for (path, model) in models(context) {
+        let Some(measurement) = document.measurement(model.measurement.as_str()) else { continue };
+        // Another reduction than the standard's, or data that cannot be reduced, leave nothing to compare.
+        let Ok(reduction) = model.reduction.parse::<Reduction>() else { continue };
+        let Ok(data) = reduce(document, measurement, reduction) else { continue };
+        let stored = &model.residuals;
+        let fitted = fitted_parameters(model, data.values.nrows());
+        let Ok((_, computed)) = crate::dataset::residuals(model, &data, fitted) else { continue };
+        let differs = |a: f64, b: f64| !(a.is_nan() && b.is_nan()) && !((a - b).abs() <= RECOMPUTED * b.abs().max(f64::MIN_POSITIVE));
+        let numbers = [
+            (name::RESIDUAL_RMS, stored.rms, computed.rms),
+            (name::REDUCED_CHI_SQUARE, stored.reduced_chi_square, computed.reduced_chi_square),
+            (name::RESIDUAL_COUNT, stored.count as f64, computed.count as f64),
+        ];
+        for (attribute, stored, computed) in numbers {
+            if differs(stored, computed) {
+                let place = Place::path(format!("{path}@{attribute}"));
+                found.add(place, stored.to_string(), format!("{computed}, which the stored terms leave on the stored data"));
+            }
+        }
+    }
+}
+
+/// How many parameters were fitted to the numbers: those of each emission value, and the common ones once.
+fn fitted_parameters(model: &Model, emission: usize) -> usize {
+    let parameters = model.terms.iter().flat_map(|term| &term.parameters);
+    parameters.map(|parameter| if parameter.value.len() == emission { emission } else { 1 }).sum()
+}
+
+pub(in super::super) fn complete(context: &Context<'_>, found: &mut Finder) {
+    for (path, model) in models(context) {
+        for emission in 0..model.emission.len() {
+            if let Err(error) = model.terms_at(emission) {
+                found.add(Place::path(&path), error.to_string(), "every parameter of every term");
+                break;
+            }
+        }
+    }
+}
+
+pub(in super::super) fn uncertainty(context: &Context<'_>, found: &mut Finder) {
+    for (path, model) in models(context) {
+        for (t, term) in model.terms.iter().enumerate() {
+            for (p, fitted) in term.parameters.iter().enumerate() {
+                let place = Place::path(format!("{path}/{}{t}/{}{p}{}", name::TERM, name::PARAMETER, name::SUFFIX_U));
+                let (found_u, expected) = (fitted.standard_uncertainty.len(), fitted.value.len());
+                if found_u != expected {
+                    found.add(place, format!("{found_u} uncertainties"), format!("{expected}, one for each value"));
+                } else if let Some(at) = fitted.standard_uncertainty.iter().position(|u| *u < 0.0 || u.is_infinite()) {
+                    let value = fitted.standard_uncertainty[at];
+                    found.add(place.at_index([at]), value.to_string(), "zero or more, or NaN where the data cannot tell");
+                }
+            }
+        }
+    }
+}
+
+pub(in super::super) fn correlation(context: &Context<'_>, found: &mut Finder) {
+    for (path, model) in models(context).filter(|(_, model)| model.covariance.is_square()) {
+        let covariance = &model.covariance;
+        let beyond = covariance.indexed_iter().find(|((row, column), value)| {
+            let bound = (covariance[[*row, *row]] * covariance[[*column, *column]]).sqrt();
+            row < column && value.abs() > bound * (1.0 + 1e-9)
+        });
+        if let Some(((row, column), value)) = beyond {
+            let place = Place::path(format!("{path}/{}", name::COVARIANCE)).at_index([row, column]);
+            found.add(place, value.to_string(), "at most the geometric mean of the two variances in magnitude");
+        }
     }
 }

@@ -5,7 +5,7 @@ use super::super::finding::Finder;
 use crate::container::layout::name;
 use crate::container::tree::Array;
 use crate::dataset::Place;
-use crate::quantity::QuantityKind;
+use crate::quantity::{Bandpass, EmissionAxis, NormalisedAt, Part, Quantity, QuantityKind, Reference};
 
 pub(in super::super) fn units(context: &Context<'_>, found: &mut Finder) {
     for (path, dataset) in context.datasets() {
@@ -44,6 +44,100 @@ pub(in super::super) fn certified_factor(context: &Context<'_>, found: &mut Find
         if count > 1 && count != emission {
             let place = Place::path(format!("{path}/{}", name::CERTIFIED_FACTOR));
             found.add(place, format!("{count} factors"), format!("none, one, or {emission}"));
+        }
+    }
+}
+
+pub(in super::super) fn si_unit(context: &Context<'_>, found: &mut Finder) {
+    use crate::container::Mismatch;
+    for mismatch in &context.inspection.mismatches {
+        let Mismatch::Attribute(path) = mismatch else { continue };
+        if path.ends_with(&format!("@{}", name::SI_FACTOR)) || path.ends_with(&format!("@{}", name::SI_EXPONENTS)) {
+            found.add(Place::path(path), "other numbers, or none", "what the unit of the quantity is in SI");
+        }
+    }
+}
+
+/// Reports the quantities of measurements that a test objects to, at one of their attributes.
+fn each(
+    context: &Context<'_>,
+    found: &mut Finder,
+    attribute: &str,
+    objects: impl Fn(&Quantity) -> Option<(String, &'static str)>,
+) {
+    for (path, measurement) in context.measurements() {
+        if let Some((what, expected)) = objects(&measurement.quantity) {
+            found.add(Place::path(format!("{path}/{}@{attribute}", name::VALUE)), what, expected);
+        }
+    }
+}
+
+pub(in super::super) fn part_of_kind(context: &Context<'_>, found: &mut Finder) {
+    each(context, found, name::PART, |quantity| {
+        let wrong = quantity.kind == QuantityKind::BispectralLuminescentRadianceFactor
+            && !matches!(quantity.part, Part::Luminescent | Part::Unstated);
+        wrong.then(|| (format!("`{}`", quantity.part), "`luminescent`: a density has no elastic part, which is a line"))
+    });
+}
+
+pub(in super::super) fn normalised_at_of_kind(context: &Context<'_>, found: &mut Finder) {
+    each(context, found, name::NORMALISED_AT, |quantity| {
+        let (expected, text) = match quantity.kind {
+            QuantityKind::RadianceFactor | QuantityKind::LuminanceFactor | QuantityKind::BandRadianceFactor => {
+                (NormalisedAt::Emission, "`emission`: the reference is read at the wavelength of the value")
+            }
+            QuantityKind::BispectralLuminescentRadianceFactor | QuantityKind::Brrdf => {
+                (NormalisedAt::Excitation, "`excitation`: the light that excites is what the value is relative to")
+            }
+            QuantityKind::SpectralRadiance
+            | QuantityKind::SpectralIrradiance
+            | QuantityKind::BandRadiance
+            | QuantityKind::Luminance => (NormalisedAt::None, "`none`: it is no ratio"),
+            _ => return None,
+        };
+        let fits = quantity.normalised_at == expected || quantity.normalised_at == NormalisedAt::Unstated;
+        (!fits).then(|| (format!("`{}`", quantity.normalised_at), text))
+    });
+}
+
+pub(in super::super) fn reference_of_kind(context: &Context<'_>, found: &mut Finder) {
+    each(context, found, name::REFERENCE, |quantity| {
+        if quantity.kind.is_factor() && quantity.reference == Reference::None {
+            return Some(("`none`".to_owned(), "the geometry of the reference: a factor is a ratio to one"));
+        }
+        let absolute = matches!(
+            quantity.kind,
+            QuantityKind::SpectralRadiance
+                | QuantityKind::SpectralIrradiance
+                | QuantityKind::BandRadiance
+                | QuantityKind::Luminance
+        );
+        let relative = !matches!(quantity.reference, Reference::None | Reference::Unstated);
+        (absolute && relative).then(|| (format!("`{}`", quantity.reference), "`none`: it is no ratio"))
+    });
+}
+
+pub(in super::super) fn certified_factor_range(context: &Context<'_>, found: &mut Finder) {
+    // No material reflects more than all; the best diffusers reach 1.02 at some angles.
+    const HIGHEST: f64 = 1.1;
+    for (path, measurement) in context.measurements() {
+        let factor = &measurement.quantity.certified_factor;
+        if let Some(index) = factor.iter().position(|factor| !(*factor > 0.0 && *factor <= HIGHEST)) {
+            let place = Place::path(format!("{path}/{}", name::CERTIFIED_FACTOR)).at_index([index]);
+            found.add(place, factor[index].to_string(), format!("more than 0, at most {HIGHEST}"));
+        }
+    }
+}
+
+pub(in super::super) fn donaldson_width(context: &Context<'_>, found: &mut Finder) {
+    for (path, measurement) in context.measurements() {
+        let widths = match &measurement.emission {
+            EmissionAxis::Wavelengths(axis) => axis.bandpass != Bandpass::Unstated,
+            EmissionAxis::Band { .. } => false,
+        };
+        if measurement.quantity.kind == QuantityKind::DonaldsonMatrix && !widths {
+            let place = Place::path(format!("{path}/{}", name::FWHM));
+            found.add(place, "nothing", "the emission width that the off-diagonal values contain");
         }
     }
 }
