@@ -25,13 +25,8 @@ pub enum Construct {
     Reference,
     /// A group or dataset that does not keep the order in which its members or attributes were made.
     NoCreationOrder,
-    /// A fill value of another size than the elements.
-    FillValueType {
-        /// Bytes of the fill value.
-        found: usize,
-        /// Bytes of an element.
-        expected: usize,
-    },
+    /// A `_FillValue` of another type than the values.
+    FillValueType,
     /// An enumeration, as h5py writes truth values.
     Enumeration,
     /// A compound, array, opaque or bit-field type.
@@ -93,8 +88,18 @@ pub(super) fn of_group(header: &ObjectHeader, path: &str, found: &mut Vec<Encode
     }
 }
 
+/// Why this reader does not have the values of a dataset, though they may be undamaged.
+pub(super) fn unreadable(header: &ObjectHeader) -> Option<String> {
+    let is_null = header.messages.iter().any(|message| match message {
+        HdfMessage::Dataspace(space) => space.dataspace_type == DataspaceType::Null,
+        _ => false,
+    });
+    let filter = filters(header).first().map(|filter| format!("what filter {filter} made of it"));
+    filter.or_else(|| is_null.then(|| "nothing (a null dataspace)".to_owned()))
+}
+
 /// The filters of a dataset that not every reader has.
-pub(super) fn filters(header: &ObjectHeader) -> Vec<u16> {
+fn filters(header: &ObjectHeader) -> Vec<u16> {
     let pipelines = header.messages.iter().filter_map(|message| match message {
         HdfMessage::FilterPipeline(pipeline) => Some(pipeline),
         _ => None,
@@ -119,14 +124,10 @@ pub(super) fn of_dataset(dataset: &hdf5_reader::Dataset, header: &ObjectHeader, 
     if has_attributes && !ordered {
         add(Construct::NoCreationOrder);
     }
-    let element = hdf5_reader::dtype_element_size(dataset.dtype()).ok();
-    let fill = dataset.fill_value().and_then(|fill| fill.value.as_ref()).map(Vec::len);
-    if let (Some(found), Some(expected)) = (fill.filter(|bytes| *bytes > 0), element)
-        && found != expected
-    {
-        add(Construct::FillValueType { found, expected });
-    }
     let attributes = dataset.attributes();
+    if attributes.iter().any(|attribute| attribute.name == "_FillValue" && attribute.datatype != *dataset.dtype()) {
+        add(Construct::FillValueType);
+    }
     let is_scale = attributes.iter().any(|attribute| attribute.name == "CLASS");
     let scaled = attributes.iter().any(|attribute| attribute.name == "DIMENSION_LIST");
     if !is_scale && !scaled && dataset.ndim() > 0 {

@@ -33,7 +33,7 @@ pub use limits::Limits;
 pub use open::{Inspection, Mismatch, Opened, inspect, open_verified, read_bytes, read_file};
 
 #[cfg(feature = "write")]
-pub use save::{document_bytes, rewritten_bytes, tree_bytes, write_file};
+pub use save::{document_bytes, document_tree, rewritten_bytes, sign_tree, tree_bytes, write_file};
 
 #[cfg(feature = "write")]
 mod save;

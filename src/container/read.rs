@@ -97,9 +97,8 @@ impl Walk<'_> {
         let shape = lengths(dataset.shape(), path)?;
         let header = self.file.get_or_parse_header(dataset.address()).map_err(|error| ReadError::encoding(path, error))?;
         encoding::of_dataset(dataset, &header, path, &mut self.unusual);
-        let foreign = encoding::filters(&header);
-        let data = match foreign.first() {
-            Some(filter) => Data::Other(format!("what filter {filter} made of it")),
+        let data = match encoding::unreadable(&header) {
+            Some(why) => Data::Other(why),
             None => self.values(dataset, path)?,
         };
         let is_scale = attributes.get("CLASS").and_then(Array::as_text) == Some("DIMENSION_SCALE");

@@ -53,6 +53,21 @@ fn encoded(document: &Document) -> Result<Group, EncodeError> {
     Ok(tree)
 }
 
+/// The tree of a document without its digests, for tests that make faults in it.
+///
+/// # Errors
+/// [`EncodeError`] where the document has no form in the standard.
+#[doc(hidden)]
+pub fn document_tree(document: &Document) -> Result<Group, EncodeError> {
+    encode(document)
+}
+
+/// Puts the digests into any tree, for tests that need faulty files with right digests.
+#[doc(hidden)]
+pub fn sign_tree(tree: &mut Group) {
+    sign(tree);
+}
+
 /// The bytes of the file that holds any tree, for tests that need faulty files.
 ///
 /// # Errors

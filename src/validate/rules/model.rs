@@ -91,7 +91,8 @@ pub(in super::super) fn not_converged(context: &Context<'_>, found: &mut Finder)
 const RECOMPUTED: f64 = 1e-6;
 
 pub(in super::super) fn residuals(context: &Context<'_>, found: &mut Finder) {
-    let Some(document) = context.document() else { return };
+    // A reduction asks for arrays that fit together.
+    let Some(document) = context.document().filter(|document| document.check().is_ok()) else { return };
     for (path, model) in models(context) {
         let Some(measurement) = document.measurement(model.measurement.as_str()) else { continue };
         // Another reduction than the standard's, or data that cannot be reduced, leave nothing to compare.

@@ -8,8 +8,13 @@ use crate::dataset::Place;
 
 /// Reports every place of a kind of construct.
 fn each(context: &Context<'_>, found: &mut Finder, expected: &str, says: impl Fn(&Construct) -> Option<String>) {
+    each_at(context, found, expected, |_, construct| says(construct));
+}
+
+/// The same where the place matters.
+fn each_at(context: &Context<'_>, found: &mut Finder, expected: &str, says: impl Fn(&str, &Construct) -> Option<String>) {
     for (path, construct) in &context.inspection.unusual {
-        if let Some(what) = says(construct) {
+        if let Some(what) = says(path, construct) {
             found.add(Place::path(path), what, expected);
         }
     }
@@ -77,11 +82,9 @@ pub(in super::super) fn creation_order(context: &Context<'_>, found: &mut Finder
 }
 
 pub(in super::super) fn fill_value(context: &Context<'_>, found: &mut Finder) {
-    each(context, found, "a fill value of the type of the values", |construct| match construct {
-        Construct::FillValueType { found, expected } => {
-            Some(format!("a fill value of {found} bytes on elements of {expected}; older netCDF-C refuses the variable"))
-        }
-        _ => None,
+    each(context, found, "a `_FillValue` of the type of the values", |construct| {
+        let what = "a `_FillValue` of another type than the values; older netCDF-C refuses the variable";
+        (*construct == Construct::FillValueType).then(|| what.to_owned())
     });
 }
 
@@ -121,7 +124,9 @@ pub(in super::super) fn superblock(context: &Context<'_>, found: &mut Finder) {
 }
 
 pub(in super::super) fn dimension_scale(context: &Context<'_>, found: &mut Finder) {
-    each(context, found, "a dimension scale on every axis", |construct| match construct {
+    each_at(context, found, "a dimension scale on every axis", |path, construct| match construct {
+        // What a laboratory adds is kept as it is, without scales.
+        Construct::NoScale(_) if path.starts_with("/extension/") => None,
         Construct::NoScale(axes) => {
             Some(format!("{axes} axes without a scale; netCDF-C and xarray invent names and merge axes of one length"))
         }

@@ -1,0 +1,64 @@
+//! Every fault of the kit is found by the rule that it is made for, and the clean file is left alone.
+#![cfg(feature = "write")]
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test")]
+
+#[path = "../conformance/mod.rs"]
+mod conformance;
+
+use bbrf::validate::{CLAUSES, RULES, Severity, Status, rule, validate_bytes};
+use conformance::{FAULTS, clean_bytes, found};
+
+#[test]
+fn the_clean_file_is_left_alone() {
+    let report = validate_bytes(&clean_bytes());
+    assert_eq!(report.findings, [], "{:#?}", report.findings);
+    assert_eq!(report.status(), Status::Valid);
+}
+
+#[test]
+fn every_fault_is_found_by_its_rule() {
+    let missed: Vec<String> = FAULTS
+        .iter()
+        .filter_map(|fault| {
+            let found = found(&fault.bytes());
+            (!found.contains(&fault.rule)).then(|| format!("{}: found {found:?}", fault.file_name()))
+        })
+        .collect();
+    assert!(missed.is_empty(), "{missed:#?}");
+}
+
+#[test]
+fn what_is_no_hdf5_is_unreadable() {
+    for fault in FAULTS.iter().filter(|fault| fault.rule == "structure.hdf5") {
+        assert_eq!(validate_bytes(&fault.bytes()).status(), Status::Unreadable, "{}", fault.file_name());
+    }
+}
+
+#[test]
+fn each_rule_has_a_fault_a_clause_and_one_name() {
+    for (position, rule) in RULES.iter().enumerate() {
+        let name = rule.id.strip_prefix("bbrf:1.0:").unwrap();
+        // Encodings are made by another library: see `encodings.rs`.
+        let tested = FAULTS.iter().any(|fault| fault.rule == name) || rule.group() == "portability";
+        assert!(tested, "{name} has no fault");
+        let others = RULES.iter().skip(position + 1);
+        assert!(others.into_iter().all(|other| other.id != rule.id && other.alias != rule.alias), "{name} twice");
+        assert!(!rule.rationale.is_empty() && !rule.example.is_empty() && !rule.repair.is_empty());
+        assert!(CLAUSES.iter().any(|clause| clause.0 == rule.clause()), "{name} has no clause");
+    }
+    for fault in FAULTS {
+        assert!(rule(fault.rule).is_some(), "no rule {}", fault.rule);
+        assert_eq!(FAULTS.iter().filter(|other| other.file_name() == fault.file_name()).count(), 1, "{}", fault.file_name());
+    }
+    assert!(FAULTS.len() >= 150, "{} faults", FAULTS.len());
+    assert!(RULES.iter().any(|rule| rule.severity == Severity::Info));
+}
+
+#[test]
+fn a_finding_of_physics_has_its_z_score() {
+    let fault = FAULTS.iter().find(|fault| fault.rule == "physics.negative").unwrap();
+    let report = validate_bytes(&fault.bytes());
+    let finding = report.findings.iter().find(|finding| finding.rule.ends_with("physics.negative")).unwrap();
+    assert!(finding.z.unwrap() > 10.0 && finding.severity == Severity::Warning, "{finding:#?}");
+    assert_eq!(finding.place.index, [0, 20]);
+}
