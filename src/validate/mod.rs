@@ -4,16 +4,21 @@
 //!
 //! *Invariant:* whatever the bytes, validation ends in a report; a file that cannot be read in full is never valid.
 
+mod checked;
 mod context;
 mod finding;
+pub mod form;
+mod grading;
 mod registry;
 mod rules;
 mod significance;
 
 use crate::container::{Limits, inspect};
 
+pub use checked::{Checked, validate_file, validate_files};
 pub use context::Context;
 pub use finding::{Finding, Report, Severity, Status};
+pub use grading::{Grading, PROFILES, Profile, UnknownRule, profile};
 pub use registry::{CLAUSES, RULES, Rule, rule};
 
 /// Validates the bytes of a file.

@@ -45,10 +45,16 @@ pub const CLAUSES: &[(u8, &str, &str)] = &[
 ];
 
 impl Rule {
+    /// The name without the version, `GROUP.NAME`.
+    #[must_use]
+    pub fn name(&self) -> &'static str {
+        self.id.rsplit(':').next().unwrap_or_default()
+    }
+
     /// The group of the rule: the part of its name before the point.
     #[must_use]
     pub fn group(&self) -> &'static str {
-        self.id.rsplit(':').next().and_then(|name| name.split('.').next()).unwrap_or_default()
+        self.name().split('.').next().unwrap_or_default()
     }
 
     /// The clause of the specification that the rule checks.

@@ -1,0 +1,96 @@
+//! A validated file: its report under a grading.
+
+use std::path::Path;
+
+use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
+use schemars::JsonSchema;
+use serde::Serialize;
+use sha2::{Digest as _, Sha256};
+
+use super::finding::{Finding, Report, Severity, Status};
+use super::grading::Grading;
+use super::{rule, validate_bytes};
+use crate::dataset::Place;
+
+/// One file with what was found in it.
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+pub struct Checked {
+    /// The file as the caller named it.
+    pub file: String,
+    /// What the findings amount to.
+    pub status: Status,
+    /// The findings.
+    #[serde(flatten)]
+    pub report: Report,
+}
+
+/// Validates files over all cores; the results come in the order of the files. One that is broken does not stop the
+/// rest. `done` is called after each.
+pub fn validate_files<P: AsRef<Path> + Sync>(files: &[P], grading: &Grading, done: impl Fn() + Sync) -> Vec<Checked> {
+    let checked = |path: &P| {
+        let result = validate_file(path.as_ref(), grading);
+        done();
+        result
+    };
+    files.par_iter().map(checked).collect()
+}
+
+/// Validates one file.
+#[must_use]
+pub fn validate_file(path: &Path, grading: &Grading) -> Checked {
+    let file = path.display().to_string();
+    let mut report = match std::fs::read(path) {
+        Ok(bytes) => validate_bytes(&bytes),
+        Err(error) => not_read(&error),
+    };
+    for finding in &mut report.findings {
+        finding.place.file = Some(file.clone());
+    }
+    report.findings.retain_mut(|finding| grading.apply(finding));
+    Checked { file, status: report.status(), report }
+}
+
+/// The report on a file that the operating system does not give.
+fn not_read(error: &std::io::Error) -> Report {
+    let mut found = rule("structure.hdf5").map(super::Rule::finder);
+    if let Some(found) = &mut found {
+        found.add(Place::default(), format!("cannot be read: {error}"), "a readable file");
+    }
+    Report { digest: None, readable: false, findings: found.map_or_else(Vec::new, |found| found.findings) }
+}
+
+impl Checked {
+    /// How many findings are of that severity.
+    #[must_use]
+    pub fn count(&self, severity: Severity) -> usize {
+        self.report.findings.iter().filter(|finding| finding.severity == severity).count()
+    }
+
+    /// The verdict in one line.
+    #[must_use]
+    pub fn verdict(&self) -> String {
+        let counted = |severity, noun: &str| {
+            let count = self.count(severity);
+            format!("{count} {noun}{}", if count == 1 { "" } else { "s" })
+        };
+        let verdict = match self.status {
+            Status::Valid => "valid",
+            Status::Invalid => "NOT VALID",
+            Status::Unreadable => "NOT READABLE",
+        };
+        let [errors, warnings, notes] =
+            [(Severity::Error, "error"), (Severity::Warning, "warning"), (Severity::Info, "note")].map(|(s, n)| counted(s, n));
+        format!("{}: {verdict} ({errors}, {warnings}, {notes})", self.file)
+    }
+}
+
+impl Finding {
+    /// What stays the same between two runs over two versions of a file: the rule and the place, without the folder.
+    #[must_use]
+    pub fn fingerprint(&self) -> String {
+        let file = self.place.file.as_deref().map(Path::new).and_then(Path::file_name).unwrap_or_default();
+        let place = Place { file: None, ..self.place.clone() };
+        let text = format!("{}|{}|{place}", self.rule, file.to_string_lossy());
+        Sha256::digest(text).iter().take(16).map(|byte| format!("{byte:02x}")).collect()
+    }
+}
