@@ -83,7 +83,7 @@ pub(crate) fn run(arguments: &Arguments) -> CommandResult {
     if arguments.json {
         print_json("bbrf:info:1", &result)?;
     } else {
-        print_text(result.text().trim_end());
+        print_text(result.text().trim_end())?;
     }
     Ok(Outcome::Done)
 }

@@ -57,7 +57,7 @@ pub(crate) fn run(arguments: &Arguments) -> CommandResult {
         print_json("bbrf:rules:1", &RulesResult { rules: RULES.iter().map(RuleText::from).collect() })?;
     } else {
         let line = |rule: &Rule| format!("{}  {:7}  {}", rule.alias, rule.severity.name(), rule.id);
-        print_text(&RULES.iter().map(line).collect::<Vec<_>>().join("\n"));
+        print_text(&RULES.iter().map(line).collect::<Vec<_>>().join("\n"))?;
     }
     Ok(Outcome::Done)
 }
@@ -75,7 +75,7 @@ pub(crate) fn explain(arguments: &ExplainArguments) -> CommandResult {
             rule.rationale,
             rule.example,
             rule.repair
-        ));
+        ))?;
     }
     Ok(Outcome::Done)
 }

@@ -86,7 +86,7 @@ pub(crate) fn run(arguments: &Arguments) -> CommandResult {
     if arguments.json || arguments.output == Form::Json {
         print_json("bbrf:validate:1", &ValidateResult { files })?;
     } else {
-        files.iter().for_each(|file| print_text(&file.text()));
+        files.iter().try_for_each(|file| print_text(&file.text()))?;
     }
     match worst {
         Status::Valid => Ok(Outcome::Done),
