@@ -86,7 +86,7 @@ impl Prediction {
 /// Predicts the sum of terms under a reference convention.
 ///
 /// # Errors
-/// [`Undefined`] where a term has no value at the geometry.
+/// [`Undefined`] where a term, or the sum, has no value at the geometry.
 pub fn predict(terms: &[Term], geometry: &Geometry, reference: &Reference) -> Result<Prediction, Undefined> {
     let mut sum = Prediction::default();
     for term in terms {
@@ -96,7 +96,7 @@ pub fn predict(terms: &[Term], geometry: &Geometry, reference: &Reference) -> Re
             TermKind::Lambertian | TermKind::TorranceSparrow => sum.elastic += value,
         }
     }
-    Ok(sum)
+    if sum.total().is_finite() { Ok(sum) } else { Err(Undefined::NotFinite) }
 }
 
 /// Predictions \[emission, N\] for reduced data; NaN where a term is undefined.
