@@ -115,7 +115,8 @@ fn predictions(model: &Model, data: &Reduced) -> Result<Array2<f64>, TermsError>
 /// [`TermsError`] when a parameter of the model is missing.
 pub fn residuals(model: &Model, data: &Reduced, parameters: usize) -> Result<(Array2<f64>, Residuals), TermsError> {
     let residual = &data.values - &predictions(model, data)?;
-    let weight_known = |index: (usize, usize)| data.sigma.as_ref().is_none_or(|sigma| sigma[index] > 0.0);
+    let weight_known =
+        |index: (usize, usize)| data.sigma.as_ref().is_none_or(|sigma| sigma[index] > 0.0 && sigma[index].is_finite());
     let used: Vec<((usize, usize), f64)> = residual
         .indexed_iter()
         .filter(|(index, value)| value.is_finite() && weight_known(*index))
