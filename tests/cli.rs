@@ -172,6 +172,8 @@ fn a_wrong_call_is_status_2_with_what_is_expected() {
     fails(&["fit", "--measurement", "nothing"], "radiance, white, dark, scan");
     fails(&["fit", "--terms", "phong"], "torrance-sparrow");
     fails(&["fit", "--terms", "lambertian,luminescent"], "cannot be told apart");
+    fails(&["fit", "--terms", "lambertian,lambertian"], "asked for twice");
+    fails(&["fit", "--reference", "same-geometry"], "states its reference as `fixed-geometry(0,45)`");
     fails(&["fit", "--reduce", "band:620-500"], "FROM below TO");
     fails(&["fit", "--reduce", "band:900-1000"], "780");
     fails(&["export", "--to", "csv", "--measurement", "nothing"], "nothing");

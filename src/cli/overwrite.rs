@@ -10,7 +10,7 @@ pub(crate) fn refuse_overwriting(output: &Path, read: impl IntoIterator<Item = P
         None => Ok(()),
         Some(input) => Err(miette!(
             help = "give the output another name",
-            "{}: the input {} would be overwritten; expected a file that is not read",
+            "{}: found an input file ({}), which would be overwritten; expected a file that is not read",
             output.display(),
             input.display()
         )),
