@@ -4,6 +4,7 @@
 use std::path::{Path, PathBuf};
 
 use assert_cmd::Command;
+use predicates::prelude::PredicateBooleanExt;
 use predicates::str::contains;
 use serde_json::Value;
 
@@ -144,6 +145,24 @@ fn a_geometry_without_a_value_fails_with_its_line_and_is_never_nan() {
 }
 
 #[test]
+fn a_parameter_beyond_the_range_of_numbers_is_undefined_and_never_nan_or_infinite() {
+    let folder = tempfile::tempdir().unwrap();
+    let (model, geometry) = (folder.path().join("m.json"), folder.path().join("g.csv"));
+    std::fs::write(&geometry, "theta_i_deg,phi_i_deg,theta_v_deg,phi_v_deg\n30,180,30,0\n").unwrap();
+    for (roughness, index) in [("0.1", "1e200"), ("1e-160", "1.5")] {
+        let term = format!(
+            r#"{{"terms":[{{"kind":"torrance-sparrow","intensity":1,"roughness":{roughness},"refractive_index":{index},
+               "distribution":"beckmann"}}]}}"#
+        );
+        std::fs::write(&model, term).unwrap();
+        let run = bbrf().args(["eval", "--factors", "--model"]).arg(&model).arg("--geometry").arg(&geometry).assert();
+        let run = run.code(1).stderr(contains("line 2").and(contains("no finite value")));
+        let text = String::from_utf8(run.get_output().stdout.clone()).unwrap();
+        assert!(!text.contains("NaN") && !text.contains("inf"), "{text}");
+    }
+}
+
+#[test]
 fn a_wrong_call_is_status_2_with_what_is_expected() {
     let folder = tempfile::tempdir().unwrap();
     let file = fitted(folder.path());
@@ -153,6 +172,8 @@ fn a_wrong_call_is_status_2_with_what_is_expected() {
     fails(&["fit", "--measurement", "nothing"], "radiance, white, dark, scan");
     fails(&["fit", "--terms", "phong"], "torrance-sparrow");
     fails(&["fit", "--terms", "lambertian,luminescent"], "cannot be told apart");
+    fails(&["fit", "--terms", "lambertian,lambertian"], "asked for twice");
+    fails(&["fit", "--reference", "same-geometry"], "states its reference as `fixed-geometry(0,45)`");
     fails(&["fit", "--reduce", "band:620-500"], "FROM below TO");
     fails(&["fit", "--reduce", "band:900-1000"], "780");
     fails(&["export", "--to", "csv", "--measurement", "nothing"], "nothing");

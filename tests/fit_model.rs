@@ -160,3 +160,132 @@ fn nothing_to_fit_is_an_error_with_the_reason() {
     let band = FitOptions { reduction: "band:500-600".parse::<Reduction>().unwrap(), ..FitOptions::default() };
     assert!(fit(&few, &band).unwrap_err().to_string().contains("--reduce"));
 }
+
+#[test]
+fn what_is_left_out_is_named_and_counted_once() {
+    let mut grid = paper_grid();
+    let (mut values, sigma) = measure(&paper_sphere(), &grid, 0.01, &mut Random::new(1));
+    let mut sigma = sigma;
+    sigma[0] = 0.0;
+    sigma[1] = f64::NAN;
+    sigma[2] = f64::INFINITY;
+    values[3] = f64::NAN;
+    for (theta_i, theta_v) in [(90.0, 10.0), (100.0, 10.0)] {
+        grid.push(Geometry::from_degrees(theta_i, 180.0, theta_v, 0.0).unwrap());
+        values.push(0.5);
+        sigma.push(0.01);
+    }
+    let over_same = |v: &f64, g: &Geometry| v / g.incidence.cos_theta().abs().max(0.1);
+    let values: Vec<f64> = values.iter().zip(&grid).map(|(v, g)| over_same(v, g)).collect();
+    let document = document(&grid, values, Some(sigma), Reference::SameGeometry);
+    let model = fit(&document, &FitOptions::default()).unwrap();
+    let said = |text: &str| model.identifiability.iter().any(|finding| finding.contains(text));
+    for text in [
+        "1 whose standard uncertainty (sigma) is 0",
+        "2 whose standard uncertainty (sigma) is empty",
+        "1 at a grazing geometry",
+        "2 without a number that may be used",
+    ] {
+        assert!(said(text), "{text}: {:?}", model.identifiability);
+    }
+    assert_eq!((model.residuals.count, model.residuals.left_out), (274 - 6, 6));
+}
+
+#[test]
+fn a_diffuse_term_keeps_the_grazing_values_that_a_specular_one_cannot_have() {
+    let mut grid = paper_grid();
+    grid.push(Geometry::from_degrees(90.0, 180.0, 10.0, 0.0).unwrap());
+    let values: Vec<f64> = (0..grid.len()).map(|k| 0.5 + 0.001 * f64::from(k as u32 % 3)).collect();
+    let document = document(&grid, values, Some(vec![0.01; 273]), Reference::SameGeometry);
+    for terms in [vec![TermKind::Lambertian], Vec::new()] {
+        let model = fit(&document, &FitOptions { terms, ..FitOptions::default() }).unwrap();
+        assert_eq!((model.terms.len(), model.residuals.count, model.residuals.left_out), (1, 273, 0));
+    }
+}
+
+#[test]
+fn uncertainties_of_zero_throughout_are_named_in_the_refusal() {
+    let grid = paper_grid();
+    let (values, _) = measure(&paper_sphere(), &grid, 0.01, &mut Random::new(1));
+    let document = document(&grid, values, Some(vec![0.0; 272]), FIXED);
+    let error = fit(&document, &FitOptions::default()).unwrap_err().to_string();
+    assert!(error.contains("272 whose standard uncertainty (sigma) is 0"), "{error}");
+}
+
+#[test]
+fn a_parameter_on_its_bound_has_no_ordinary_uncertainty_and_it_is_said() {
+    let grid = paper_grid();
+    let on_bound = |model: &Model, term: usize, parameter: usize, text: &str| {
+        assert!(model.identifiability.iter().any(|finding| finding.contains(text)), "{:?}", model.identifiability);
+        let parameter = &model.terms[term].parameters[parameter];
+        assert!(parameter.standard_uncertainty[0].is_nan(), "{parameter:?}");
+    };
+    // An offset below zero asks for a negative albedo.
+    let (values, _) = measure(&paper_sphere(), &grid, 0.0, &mut Random::new(1));
+    let lowered = values.iter().map(|value| value - 1.0).collect();
+    let model = fit(&document(&grid, lowered, Some(vec![0.01; 272]), FIXED), &FitOptions::default()).unwrap();
+    assert_eq!(model.terms[0].parameters[0].value, [0.0]);
+    on_bound(&model, 0, 0, "the amplitude of the diffuse term ended on its bound, 0");
+    assert!(model.terms[1].parameters[0].standard_uncertainty[0] > 0.0, "the others have theirs");
+    // An index beyond the searched box.
+    let metal = Truth { index_minus_one: 30.0, intensity: 2.0, ..paper_sphere() };
+    let (values, sigma) = measure(&metal, &grid, 0.001, &mut Random::new(1));
+    let model = fit(&document(&grid, values, Some(sigma), FIXED), &FitOptions::default()).unwrap();
+    on_bound(&model, 1, 2, "refractive index 6.0000 lies on the edge of the searched box");
+    assert!(!model.converged);
+}
+
+#[test]
+fn a_table_of_zeros_has_no_separability_and_says_why() {
+    let grid = paper_grid();
+    let document = document(&grid, vec![0.0; 272], Some(vec![0.01; 272]), FIXED);
+    let model = fit(&document, &FitOptions::default()).unwrap();
+    assert!(model.separability.is_none());
+    let said = model.identifiability.iter().any(|finding| finding.contains("separability: undefined"));
+    assert!(said, "{:?}", model.identifiability);
+}
+
+#[test]
+fn whatever_the_magnitude_a_fit_is_finite_or_refused() {
+    let grid = paper_grid();
+    let (values, sigma) = measure(&paper_sphere(), &grid, 0.01, &mut Random::new(1));
+    let mut fitted = 0;
+    for exponent in (-300..=300).step_by(20) {
+        let scale = 10_f64.powi(exponent);
+        let scaled = |numbers: &[f64]| numbers.iter().map(|number| number * scale).collect::<Vec<f64>>();
+        for sigma in [None, Some(sigma.clone()), Some(scaled(&sigma)), Some(vec![scale; 272])] {
+            let Ok(model) = fit(&document(&grid, scaled(&values), sigma, FIXED), &FitOptions::default()) else {
+                continue;
+            };
+            fitted += 1;
+            let numbers = model.terms.iter().flat_map(|term| &term.parameters).flat_map(|parameter| &parameter.value);
+            assert!(numbers.chain([&model.residuals.rms]).all(|number| number.is_finite()), "1e{exponent}: {model:?}");
+        }
+    }
+    assert!(fitted > 10);
+    let mut one_wild = values;
+    one_wild[7] = 1e300;
+    let error = fit(&document(&grid, one_wild, Some(sigma), FIXED), &FitOptions::default()).unwrap_err().to_string();
+    assert!(error.contains("value of 1e300") && error.contains("1e60"), "{error}");
+}
+
+#[test]
+fn a_stated_reference_is_not_overruled() {
+    let grid = paper_grid();
+    let (values, sigma) = measure(&paper_sphere(), &grid, 0.01, &mut Random::new(1));
+    let document = document(&grid, values, Some(sigma), FIXED);
+    let asked = |reference| fit(&document, &FitOptions { assume_reference: Some(reference), ..FitOptions::default() });
+    assert!(asked(FIXED).is_ok());
+    let error = asked(Reference::SameGeometry).unwrap_err().to_string();
+    assert!(error.contains("fixed-geometry(0,45)") && error.contains("same-geometry"), "{error}");
+}
+
+#[test]
+fn a_term_is_named_once() {
+    let grid = paper_grid();
+    let (values, sigma) = measure(&paper_sphere(), &grid, 0.01, &mut Random::new(1));
+    let document = document(&grid, values, Some(sigma), FIXED);
+    let terms = vec![TermKind::Lambertian, TermKind::Lambertian];
+    let error = fit(&document, &FitOptions { terms, ..FitOptions::default() }).unwrap_err();
+    assert_eq!(error, FitError::SameTermTwice(TermKind::Lambertian));
+}

@@ -6,7 +6,7 @@ mod common {
     pub mod scans;
 }
 
-use bbrf::fit::{Fitter, GeometrySet, Stop, Terms};
+use bbrf::fit::{Fitter, GeometrySet, LeftOut, Stop, Terms};
 use bbrf::quantity::Reference;
 use bbrf::terms::{Denominator, Distribution};
 use common::scans::{Random, Truth, measure, paper_grid, peer_fit, prepare};
@@ -153,8 +153,10 @@ fn useless_values_are_left_out_and_too_few_are_refused() {
     sigma[11] = f64::NAN;
     sigma[12] = -1.0;
     let fit = Fitter::new(&set, BOTH).fit(&values, Some(&sigma)).unwrap();
-    assert_eq!((fit.left_out, fit.bands[0].count), (4, 268));
+    let expected = LeftOut { no_value: 1, undefined_geometry: 0, zero_sigma: 1, unknown_sigma: 2 };
+    assert_eq!((fit.left_out, fit.left_out.total(), fit.bands[0].count), (expected, 4, 268));
     sigma.fill(0.0);
-    assert!(Fitter::new(&set, BOTH).fit(&values, Some(&sigma)).is_err());
+    let error = Fitter::new(&set, BOTH).fit(&values, Some(&sigma)).unwrap_err().to_string();
+    assert!(error.contains("271 whose standard uncertainty (sigma) is 0"), "{error}");
     assert!(Fitter::new(&set, BOTH).fit(&values[1..], None).is_err());
 }

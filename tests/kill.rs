@@ -54,4 +54,8 @@ fn a_killed_writer_leaves_the_old_file_or_the_new_one() {
         let name = entry.unwrap().file_name().into_string().unwrap();
         assert!(name == "scan.bbrf" || (name.starts_with('.') && name.ends_with(".partial")), "{name}");
     }
+    // What the killed ones left is removed by the next that writes.
+    write_file(&titled("one"), &path).unwrap();
+    let names: Vec<_> = std::fs::read_dir(folder.path()).unwrap().map(|entry| entry.unwrap().file_name()).collect();
+    assert_eq!(names, ["scan.bbrf"]);
 }

@@ -1,6 +1,7 @@
 //! Laws that hold for every geometry and parameter. `BBRF_PROPTEST_CASES` asks for more cases; the seed is fixed.
 #![allow(clippy::unwrap_used)]
 
+use bbrf::dataset::predict;
 use bbrf::fit::{Fitter, GeometrySet, Terms};
 use bbrf::quantity::{Geometry, Reference};
 use bbrf::terms::{Denominator, Distribution, Term, TorranceSparrow};
@@ -44,6 +45,59 @@ fn no_term_is_negative_or_nan_anywhere() {
         Ok(())
     };
     runner().run(&(geometry(), specular()), check).unwrap();
+}
+
+/// Any finite number, of every order of magnitude, sensible or not.
+fn any_number() -> impl Strategy<Value = f64> {
+    use proptest::num::f64::{NEGATIVE, NORMAL, POSITIVE, SUBNORMAL, ZERO};
+    let edges = vec![1e200, 1e-160, 1e-308, f64::MAX, f64::MIN_POSITIVE, 1.0, 1.0 + f64::EPSILON];
+    prop_oneof![POSITIVE | NEGATIVE | NORMAL | SUBNORMAL | ZERO, prop::sample::select(edges), 1e-3..4.0]
+}
+
+#[test]
+fn whatever_the_parameters_a_value_is_finite_or_typed_undefined() {
+    let special = prop::sample::select(vec![0.0, 45.0, 90.0, 100.0, 180.0]);
+    let theta = prop_oneof![special, 0.0..=180.0];
+    let geometry = (theta.clone(), 0.0..360.0, theta, 0.0..360.0)
+        .prop_map(|(ti, pi, tv, pv)| Geometry::from_degrees(ti, pi, tv, pv).unwrap());
+    let references = vec![
+        Reference::None,
+        Reference::SameGeometry,
+        Reference::FixedGeometry { theta_i_deg: 60.0, theta_v_deg: 0.0 },
+    ];
+    let term = (
+        any_number(),
+        any_number(),
+        any_number(),
+        prop::sample::select(Distribution::ALL),
+        prop::sample::select(Denominator::ALL),
+    );
+    let check = |(geometry, mirror, term, reference): (Geometry, bool, _, Reference)| {
+        let (intensity, roughness, refractive_index, distribution, denominator) = term;
+        let mut geometry = geometry;
+        if mirror {
+            // The peak of D, where a small roughness is largest.
+            let i = geometry.incidence;
+            geometry = Geometry::from_degrees(i.theta_deg(), 180.0, i.theta_deg(), 0.0).unwrap();
+        }
+        let specular = TorranceSparrow { intensity, roughness, refractive_index, distribution, denominator };
+        let terms = [Term::TorranceSparrow(specular), Term::Lambertian { albedo: intensity }];
+        for term in &terms {
+            if let Ok(value) = term.evaluate(&geometry, &reference) {
+                let is_finite = value.value.is_finite() && value.by.iter().all(|by| by.is_finite());
+                prop_assert!(is_finite, "{term:?} {value:?}");
+            }
+        }
+        if let Ok(sum) = predict(&terms, &geometry, &reference) {
+            prop_assert!(sum.total().is_finite(), "{sum:?}");
+        }
+        if let Ok(factors) = specular.factors(&geometry) {
+            prop_assert!([factors.d, factors.g, factors.f].iter().all(|factor| factor.is_finite()), "{factors:?}");
+        }
+        Ok(())
+    };
+    let strategy = (geometry, any::<bool>(), term, prop::sample::select(references));
+    runner().run(&strategy, check).unwrap();
 }
 
 /// A BRDF times cos(theta_i): with cos(theta_v) below, the term over cos(theta_i) is symmetric in L and V.

@@ -7,6 +7,7 @@
 mod command;
 mod exit;
 mod output;
+mod overwrite;
 mod progress;
 
 use std::process::ExitCode;

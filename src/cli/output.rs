@@ -1,7 +1,8 @@
-//! Printing results: JSON with its schema's name first, and text.
+//! Printing: results on stdout, as JSON with its schema's name first or as text; messages on stderr.
 
-use std::io::Write;
+use std::io::{ErrorKind, Write};
 
+use miette::miette;
 use serde::Serialize;
 
 /// A result with the name of its JSON Schema, `bbrf:NAME:VERSION`.
@@ -12,26 +13,51 @@ pub(crate) struct Versioned<'a, T: Serialize> {
     result: &'a T,
 }
 
-/// Prints a result as JSON on stdout. A closed pipe is the reader's decision and not an error.
+/// Prints a result as JSON on stdout.
+///
+/// # Errors
+/// As [`print_bytes`].
 pub(crate) fn print_json<T: Serialize>(schema: &str, result: &T) -> Result<(), miette::Report> {
     let text = serde_json::to_string_pretty(&Versioned { schema, result })
-        .map_err(|error| miette::miette!("the result cannot be written as JSON: {error}"))?;
-    print_text(&text);
-    Ok(())
+        .map_err(|error| miette!("the result cannot be written as JSON: {error}"))?;
+    print_text(&text)
 }
 
-/// Prints text and a line break on stdout; a closed pipe is the reader's decision and not an error.
-pub(crate) fn print_text(text: &str) {
-    let _ = writeln!(std::io::stdout().lock(), "{text}");
+/// Prints text and a line break on stdout.
+///
+/// # Errors
+/// As [`print_bytes`].
+pub(crate) fn print_text(text: &str) -> Result<(), miette::Report> {
+    print_bytes(format!("{text}\n").as_bytes())
+}
+
+/// Prints bytes on stdout. A closed pipe is the reader's decision and no error.
+///
+/// # Errors
+/// Everything else, a full disk first: a result that did not arrive is no success.
+pub(crate) fn print_bytes(bytes: &[u8]) -> Result<(), miette::Report> {
+    let mut stdout = std::io::stdout().lock();
+    match stdout.write_all(bytes).and_then(|()| stdout.flush()) {
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(miette!(
+            help = "make room or send the output elsewhere, and run the command again",
+            "standard output: the result could not be written: {error}"
+        )),
+        _ => Ok(()),
+    }
+}
+
+/// Prints a message on stderr. Where stderr takes nothing there is no other place to say so.
+pub(crate) fn print_message(text: &str) {
+    let _ = writeln!(std::io::stderr().lock(), "{text}");
 }
 
 /// Prints an error on stderr: what, why, and what to do.
 pub(crate) fn report_error(report: &miette::Report) {
-    eprintln!("bbrf: error: {report}");
+    print_message(&format!("bbrf: error: {report}"));
     for cause in report.chain().skip(1) {
-        eprintln!("  because: {cause}");
+        print_message(&format!("  because: {cause}"));
     }
     if let Some(help) = report.help() {
-        eprintln!("  help: {help}");
+        print_message(&format!("  help: {help}"));
     }
 }

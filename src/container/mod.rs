@@ -15,6 +15,7 @@ mod encode;
 mod encoding;
 mod error;
 mod fields;
+mod foreign;
 pub mod layout;
 mod limits;
 mod links;
@@ -29,11 +30,12 @@ mod write;
 pub use digest::{Digest, digest, measurement_digest};
 pub use encoding::{Construct, Encoded};
 pub use error::{EncodeError, ReadError, WriteError};
+pub use foreign::Foreign;
 pub use limits::Limits;
-pub use open::{Inspection, Mismatch, Opened, inspect, open_verified, read_bytes, read_file};
+pub use open::{Inspection, Mismatch, Opened, inspect, open_to_rewrite, open_verified, read_bytes, read_file};
 
 #[cfg(feature = "write")]
-pub use save::{document_bytes, document_tree, rewritten_bytes, sign_tree, tree_bytes, write_file};
+pub use save::{document_bytes, document_tree, rewrite, rewritten_bytes, sign_tree, tree_bytes, write_file, write_file_keeping};
 
 #[cfg(feature = "write")]
 mod save;

@@ -8,6 +8,7 @@ use super::digest::{Digest, of_objects, of_tree};
 use super::encode::encode;
 use super::encoding::Encoded;
 use super::error::ReadError;
+use super::foreign::Foreign;
 use super::layout::{self, is_outside_digest, name};
 use super::limits::Limits;
 use super::read::from_bytes;
@@ -25,6 +26,8 @@ pub struct Opened {
     pub computed_digest: Digest,
     /// Paths of content that the standard does not know; `@` precedes an attribute.
     pub unknown: Vec<String>,
+    /// That content itself.
+    pub foreign: Foreign,
     /// Paths of content that is not what the digests or the standard say, with what is wrong.
     pub mismatched: Vec<String>,
 }
@@ -45,13 +48,13 @@ pub fn read_file(path: &Path) -> Result<Opened, ReadError> {
 /// # Errors
 /// As [`read_file`].
 pub fn read_bytes(bytes: &[u8], limits: &Limits) -> Result<Opened, ReadError> {
-    let Inspection { document, stored_digest, computed_digest, unknown, mismatches, .. } = inspect(bytes, limits)?;
+    let Inspection { document, stored_digest, computed_digest, foreign, unknown, mismatches, .. } = inspect(bytes, limits)?;
     let document = document?;
     document.check().map_err(|source| ReadError::Document { place: Box::default(), source })?;
     let computed_digest =
         computed_digest.ok_or_else(|| ReadError::unexpected("/", "a text with U+0000", "a storable document"))?;
     let mismatched = mismatches.iter().map(Mismatch::to_string).collect();
-    Ok(Opened { document, stored_digest, computed_digest, unknown, mismatched })
+    Ok(Opened { document, stored_digest, computed_digest, foreign, unknown, mismatched })
 }
 
 /// A file looked at without asking that it is right.
@@ -67,6 +70,8 @@ pub struct Inspection {
     pub computed_digest: Option<Digest>,
     /// Content that the standard does not know.
     pub unknown: Vec<String>,
+    /// That content itself.
+    pub foreign: Foreign,
     /// Encodings that the standard does not use and some reader cannot read.
     pub unusual: Vec<Encoded>,
     /// What differs from how the document would be written.
@@ -87,7 +92,7 @@ pub fn inspect(bytes: &[u8], limits: &Limits) -> Result<Inspection, ReadError> {
         (Some(canonical), Some(digest)) => mismatches(&tree, canonical, digest, stored_digest.as_deref()),
         _ => Vec::new(),
     };
-    Ok(Inspection { unusual, unknown: unknown(&tree), tree, document, stored_digest, computed_digest, mismatches })
+    Ok(Inspection { unusual, unknown: unknown(&tree), foreign: Foreign::of(&tree), tree, document, stored_digest, computed_digest, mismatches })
 }
 
 /// Something in a file that is not as its document would be written.
@@ -119,9 +124,17 @@ impl std::fmt::Display for Mismatch {
 /// # Errors
 /// As [`read_file`]; and [`ReadError::Damaged`], naming what differs, where a digest is missing or does not agree.
 pub fn open_verified(path: &Path) -> Result<Document, ReadError> {
+    open_to_rewrite(path).map(|(document, _)| document)
+}
+
+/// The same with what the file holds beside the standard, for who writes the document again.
+///
+/// # Errors
+/// As [`open_verified`].
+pub fn open_to_rewrite(path: &Path) -> Result<(Document, Foreign), ReadError> {
     let opened = read_file(path)?;
     if opened.mismatched.is_empty() {
-        return Ok(opened.document);
+        return Ok((opened.document, opened.foreign));
     }
     let place = Box::new(Place::file(path.display().to_string()));
     Err(ReadError::Damaged { place, mismatched: opened.mismatched })

@@ -1,15 +1,25 @@
 //! The only place that creates files. Whoever opens the path sees the old file or the new one, whole, whatever happens
 //! in between.
 
+mod abandoned;
+
+use std::ffi::OsString;
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
+use abandoned::{claim, remove_abandoned};
+
+/// Random letters and digits in the name of an unfinished file.
+const RANDOM_LETTERS: usize = 6;
+/// How the name of an unfinished file ends.
+const SUFFIX: &str = ".partial";
+
 /// Writes a file through `fill` and puts it in the place of `path` when it is complete and on the disk.
 ///
-/// The bytes go to a hidden file in the same folder (`.NAME.XXXXXX.partial`), which is removed when anything fails; a
-/// killed process may leave it behind, under a name that no program takes for a result. A link is followed, and the
-/// permissions of an old file are kept.
+/// The bytes go to a hidden file in the same folder (`.NAME.XXXXXX.partial`), which is removed when anything fails. A
+/// killed process may leave it behind, under a name that no program takes for a result; on Unix the next write of the same
+/// file removes it. A link is followed, and the permissions of an old file are kept.
 ///
 /// # Errors
 /// What `fill` or the operating system reports; then `path` is untouched.
@@ -47,18 +57,24 @@ fn partial_file(target: &Path, folder: &Path) -> io::Result<tempfile::NamedTempF
     let name = target.file_name().ok_or_else(|| {
         io::Error::new(io::ErrorKind::InvalidInput, format!("{} does not name a file", target.display()))
     })?;
-    let mut prefix = std::ffi::OsString::from(".");
+    let mut prefix = OsString::from(".");
     prefix.push(name);
     prefix.push(".");
+    remove_abandoned(folder, &prefix);
     let mut builder = tempfile::Builder::new();
-    builder.prefix(&prefix).suffix(".partial");
+    builder.prefix(&prefix).rand_bytes(RANDOM_LETTERS).suffix(SUFFIX);
     #[cfg(unix)]
     {
         use std::os::unix::fs::PermissionsExt;
         // What any program would create; the process's umask still applies.
         builder.permissions(fs::Permissions::from_mode(0o666));
     }
-    builder.tempfile_in(folder)
+    loop {
+        let partial = builder.tempfile_in(folder)?;
+        if claim(partial.as_file())? {
+            return Ok(partial);
+        }
+    }
 }
 
 /// Makes the rename itself durable.

@@ -7,6 +7,7 @@ use super::decode::decode;
 use super::digest::{Digest, of_tree, sign};
 use super::encode::encode;
 use super::error::{EncodeError, WriteError};
+use super::foreign::Foreign;
 use super::replace::write_whole;
 use super::tree::Group;
 use super::write::to_bytes;
@@ -21,6 +22,26 @@ pub fn write_file(document: &Document, path: &Path) -> Result<Digest, WriteError
     write_whole(path, |file| file.write_all(&bytes))
         .map_err(|source| WriteError::Io { path: path.to_owned(), source })?;
     Ok(digest)
+}
+
+/// The same for a document that was read from a file, with what that file holds beside the standard.
+///
+/// # Errors
+/// As [`write_file`].
+pub fn write_file_keeping(document: &Document, foreign: &Foreign, path: &Path) -> Result<(), WriteError> {
+    let bytes = rewrite(document, foreign)?;
+    write_whole(path, |file| file.write_all(&bytes)).map_err(|source| WriteError::Io { path: path.to_owned(), source })
+}
+
+/// The bytes of a document with what its file held beside the standard.
+///
+/// # Errors
+/// As [`document_bytes`].
+pub fn rewrite(document: &Document, foreign: &Foreign) -> Result<Vec<u8>, WriteError> {
+    let mut tree = encoded(document)?;
+    sign(&mut tree);
+    foreign.put_into(&mut tree);
+    to_bytes(&tree)
 }
 
 /// The bytes of the file that [`write_file`] writes, with the digest of the document.

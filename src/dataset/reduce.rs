@@ -181,8 +181,10 @@ fn usable(measurement: &Measurement, row: usize, column: usize) -> f64 {
     if measurement.flags_at(row, column).may_be_fitted() && value.is_finite() { value } else { f64::NAN }
 }
 
+/// The geometry of a row; none where a direction lies below the surface: there nothing can be measured, and every term
+/// is 0 by definition.
 fn geometry_of(measurement: &Measurement, row: usize) -> Option<Geometry> {
-    measurement.acquisitions[row].geometry
+    measurement.acquisitions[row].geometry.filter(|geometry| !geometry.is_below_horizon())
 }
 
 /// Independent standard uncertainty of one value: its own and what its acquisition shares over wavelengths.

@@ -86,7 +86,7 @@ impl Prediction {
 /// Predicts the sum of terms under a reference convention.
 ///
 /// # Errors
-/// [`Undefined`] where a term has no value at the geometry.
+/// [`Undefined`] where a term, or the sum, has no value at the geometry.
 pub fn predict(terms: &[Term], geometry: &Geometry, reference: &Reference) -> Result<Prediction, Undefined> {
     let mut sum = Prediction::default();
     for term in terms {
@@ -96,7 +96,7 @@ pub fn predict(terms: &[Term], geometry: &Geometry, reference: &Reference) -> Re
             TermKind::Lambertian | TermKind::TorranceSparrow => sum.elastic += value,
         }
     }
-    Ok(sum)
+    if sum.total().is_finite() { Ok(sum) } else { Err(Undefined::NotFinite) }
 }
 
 /// Predictions \[emission, N\] for reduced data; NaN where a term is undefined.
@@ -115,7 +115,8 @@ fn predictions(model: &Model, data: &Reduced) -> Result<Array2<f64>, TermsError>
 /// [`TermsError`] when a parameter of the model is missing.
 pub fn residuals(model: &Model, data: &Reduced, parameters: usize) -> Result<(Array2<f64>, Residuals), TermsError> {
     let residual = &data.values - &predictions(model, data)?;
-    let weight_known = |index: (usize, usize)| data.sigma.as_ref().is_none_or(|sigma| sigma[index] > 0.0);
+    let weight_known =
+        |index: (usize, usize)| data.sigma.as_ref().is_none_or(|sigma| sigma[index] > 0.0 && sigma[index].is_finite());
     let used: Vec<((usize, usize), f64)> = residual
         .indexed_iter()
         .filter(|(index, value)| value.is_finite() && weight_known(*index))

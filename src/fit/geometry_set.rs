@@ -91,12 +91,30 @@ impl GeometrySet {
         distribution: Distribution,
         denominator: Denominator,
     ) -> Result<Self, SetError> {
+        let specular = |geometry: &Geometry, half: &HalfAngles| specular_factor(denominator, geometry, half, reference);
+        Self::with_specular(geometry, reference, distribution, specular)
+    }
+
+    /// Tables for a diffuse term alone, which has a value where a specular one has none.
+    ///
+    /// # Errors
+    /// As [`GeometrySet::new`].
+    pub fn diffuse(geometry: &[Geometry], reference: &Reference) -> Result<Self, SetError> {
+        Self::with_specular(geometry, reference, Distribution::GaussianHalfHeight, |_, _| Ok(0.0))
+    }
+
+    fn with_specular(
+        geometry: &[Geometry],
+        reference: &Reference,
+        distribution: Distribution,
+        specular: impl Fn(&Geometry, &HalfAngles) -> Result<f64, Undefined>,
+    ) -> Result<Self, SetError> {
         let mut points = Vec::with_capacity(geometry.len());
         let mut undefined = Vec::new();
         for (input, geometry) in geometry.iter().enumerate() {
             let half = geometry.half_angles();
-            let factors = diffuse_factor(geometry, reference)
-                .and_then(|diffuse| Ok((diffuse, specular_factor(denominator, geometry, &half, reference)?)));
+            let factors =
+                diffuse_factor(geometry, reference).and_then(|diffuse| Ok((diffuse, specular(geometry, &half)?)));
             match factors {
                 Ok((diffuse, masked)) => points.push(Point { input, half, diffuse, masked }),
                 Err(Undefined::Reference(refused)) => return Err(refused.into()),

@@ -1,8 +1,9 @@
 //! What the data cannot tell, in words and numbers.
 
-use super::geometry_set::GeometrySet;
-use super::outcome::{Fit, Stop};
-use super::solve::SEEN;
+use super::geometry_set::{GeometrySet, INDEX_BOX};
+use super::left_out::LeftOut;
+use super::outcome::Fit;
+use super::solve::{SEEN, Terms};
 
 /// Relative standard uncertainty of n - 1 beyond which the index is called undetermined.
 const VAGUE_INDEX: f64 = 0.2;
@@ -12,15 +13,15 @@ const VAGUE_ROUGHNESS: f64 = 0.2;
 const TIED: f64 = 0.98;
 
 /// One sentence for each thing that a reader of the numbers must know.
-pub(super) fn findings(fit: &Fit, set: &GeometrySet, asked_for_specular: bool, has_sigma: bool) -> Vec<String> {
-    let mut list = Vec::new();
+pub(super) fn findings(fit: &Fit, set: &GeometrySet, terms: Terms, has_sigma: bool, left_out: &LeftOut) -> Vec<String> {
+    let mut list: Vec<String> = left_out.reasons().iter().map(|reason| format!("values left out: {reason}")).collect();
     if !has_sigma {
         list.push(
             "the data have no uncertainties: all values weigh the same and the covariance is scaled by the residuals"
                 .to_owned(),
         );
     }
-    if asked_for_specular && !fit.has_specular() {
+    if terms.specular && !fit.has_specular() {
         list.push(format!(
             "no specular term seen: the best one lowers chi-square by {:.1}, and {SEEN} are asked for; roughness, index \
              and intensity are undefined and the term is left out",
@@ -28,6 +29,9 @@ pub(super) fn findings(fit: &Fit, set: &GeometrySet, asked_for_specular: bool, h
         ));
     }
     list.extend(misfit(fit, has_sigma));
+    if terms.diffuse {
+        list.extend(at_zero("diffuse", fit.bands.iter().map(|band| band.diffuse)));
+    }
     if fit.has_specular() {
         list.extend(specular(fit, set));
     }
@@ -49,16 +53,40 @@ fn misfit(fit: &Fit, has_sigma: bool) -> Option<String> {
 
 fn specular(fit: &Fit, set: &GeometrySet) -> Vec<String> {
     let mut list = Vec::new();
-    if fit.stop == Stop::AtBound {
-        list.push(format!(
-            "roughness {:.4} or index {:.4} lies on the edge of the searched box: the data ask for a value beyond it",
-            fit.roughness,
-            fit.refractive_index()
-        ));
-    }
-    list.extend(index(fit));
-    list.extend(roughness(fit, set));
+    list.extend(at_zero("specular", fit.bands.iter().map(|band| band.intensity)));
+    let (index_low, index_high) = (1.0 + INDEX_BOX.0, 1.0 + INDEX_BOX.1);
+    list.extend(if fit.at_bound[0] {
+        Some(on_edge("roughness", fit.roughness, set.roughness_box))
+    } else {
+        roughness(fit, set)
+    });
+    list.extend(if fit.at_bound[1] {
+        Some(on_edge("refractive index", fit.refractive_index(), (index_low, index_high)))
+    } else {
+        index(fit)
+    });
     list
+}
+
+/// A parameter that ended on the edge of the searched box.
+fn on_edge(name: &str, value: f64, (low, high): (f64, f64)) -> String {
+    format!(
+        "{name} {value:.4} lies on the edge of the searched box ({low:.4} to {high:.4}): the data ask for a value beyond it; \
+         on a bound it has no ordinary standard uncertainty, and none is given"
+    )
+}
+
+/// Amplitudes that ended on their bound.
+fn at_zero(term: &str, amplitudes: impl ExactSizeIterator<Item = f64>) -> Option<String> {
+    let count = amplitudes.len();
+    let zeros = amplitudes.filter(|amplitude| *amplitude == 0.0).count();
+    let wavelengths = if count > 1 { format!(" at {zeros} of {count} wavelengths") } else { String::new() };
+    (zeros > 0).then(|| {
+        format!(
+            "the amplitude of the {term} term ended on its bound, 0{wavelengths}: the data ask for none or for a negative \
+             one; on a bound it has no ordinary standard uncertainty, and none is given"
+        )
+    })
 }
 
 fn index(fit: &Fit) -> Option<String> {

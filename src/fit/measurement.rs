@@ -4,8 +4,9 @@ use ndarray::Array2;
 
 use super::geometry_set::{GeometrySet, SetError};
 use super::identifiability::findings;
+use super::left_out::LeftOut;
 use super::outcome::Fit;
-use super::separability::separability;
+use super::separability::{NotSeparable, separability};
 use super::solve::{DataError, Fitter, Terms};
 use crate::dataset::{
     Document, FittedParameter, FittedTerm, Id, Measurement, Model, ReduceError, Reduced, Reduction, Residuals,
@@ -73,6 +74,22 @@ pub enum FitError {
         "`lambertian` and `luminescent` have one angular form under one light and cannot be told apart by a scan; fit one"
     )]
     TwoDiffuseTerms,
+    /// One term asked for twice.
+    #[error("the term `{0}` is asked for twice; a sum of two of one form has no parameters of its own: name it once")]
+    SameTermTwice(TermKind),
+    /// The reference asked for is not the one that the measurement states.
+    #[error(
+        "measurement `{measurement}` states its reference as `{stated}`; `{asked}` was asked for, and a reference can be \
+         assumed only where none is stated: leave `--reference` out, or correct the file"
+    )]
+    ReferenceStated {
+        /// Which measurement.
+        measurement: String,
+        /// What it states.
+        stated: Reference,
+        /// What was asked for.
+        asked: Reference,
+    },
     /// The same term twice, or a term of the result without a parameter.
     #[error(transparent)]
     Terms(#[from] TermsError),
@@ -92,6 +109,9 @@ impl Choice {
             _ => &[TermKind::Lambertian, TermKind::TorranceSparrow],
         };
         let terms = if terms.is_empty() { default } else { terms };
+        if let Some(twice) = terms.iter().enumerate().find(|(k, kind)| terms[..*k].contains(kind)) {
+            return Err(FitError::SameTermTwice(*twice.1));
+        }
         let has = |kind| terms.contains(&kind);
         let diffuse = match (has(TermKind::Lambertian), has(TermKind::Luminescent)) {
             (true, true) => return Err(FitError::TwoDiffuseTerms),
@@ -100,6 +120,10 @@ impl Choice {
             (false, false) => None,
         };
         Ok(Self { diffuse, specular: has(TermKind::TorranceSparrow) })
+    }
+
+    fn terms(self) -> Terms {
+        Terms { diffuse: self.diffuse.is_some(), specular: self.specular }
     }
 }
 
@@ -115,29 +139,34 @@ pub fn fit_measurement(
 ) -> Result<Model, FitError> {
     let name = || measurement.id.to_string();
     let choice = Choice::new(&options.terms, measurement.quantity.part)?;
-    let data = reduce(document, measurement, options.reduction)?;
+    let mut data = reduce(document, measurement, options.reduction)?;
     let (reference, assumed) = match (data.reference, options.assume_reference) {
         (Reference::Unstated, Some(assumed)) => (assumed, true),
+        (stated, Some(asked)) if asked != stated => {
+            return Err(FitError::ReferenceStated { measurement: name(), stated, asked });
+        }
         (stated, _) => (stated, false),
     };
-    let set = GeometrySet::new(&data.geometry, &reference, options.distribution, options.denominator)
-        .map_err(|source| FitError::Geometry { measurement: name(), source })?;
-    let terms = Terms { diffuse: choice.diffuse.is_some(), specular: choice.specular };
-    let fit = Fitter::new(&set, terms)
-        .fit_bands(data.values.view(), data.sigma.as_ref().map(|sigma| sigma.view()))
-        .map_err(|source| FitError::Data { measurement: name(), source })?;
+    let geometry_error = |source| FitError::Geometry { measurement: name(), source };
+    let data_error = |source| FitError::Data { measurement: name(), source };
+    let (set, fit) = fit_reduced(&data, &reference, choice.terms(), options, geometry_error, data_error)?;
+    // A geometry that took no part has no residual either, even where the sum of terms happens to have a value.
+    set.undefined().iter().for_each(|&row| data.values.column_mut(row).fill(f64::NAN));
+    let left_out = LeftOut { no_value: fit.left_out.no_value + data.left_out * data.values.nrows(), ..fit.left_out };
     let mut identifiability = data.notes.clone();
     if assumed {
         identifiability
             .push(format!("the measurement does not state its reference; `{reference}` was assumed on request"));
     }
-    if !set.undefined().is_empty() {
-        identifiability.push(format!(
-            "{} geometries at grazing incidence take no part: a term has no value there",
-            set.undefined().len()
-        ));
-    }
-    identifiability.extend(findings(&fit, &set, choice.specular, data.sigma.is_some()));
+    identifiability.extend(findings(&fit, &set, choice.terms(), data.sigma.is_some(), &left_out));
+    let separability = match separability(&data, &reference) {
+        Ok(separability) => Some(separability),
+        Err(NotSeparable::NoTable) => None,
+        Err(reason @ NotSeparable::Undefined(_)) => {
+            identifiability.push(reason.to_string());
+            None
+        }
+    };
     let (covariance_parameters, covariance) = stored_covariance(&fit, choice);
     let mut model = Model {
         id: Id::from_title(&format!("{}-{}", measurement.id, data.reduction)),
@@ -155,11 +184,40 @@ pub fn fit_measurement(
         converged: fit.stop.is_converged(),
         method: method(&fit),
         identifiability,
-        separability: separability(&data, &reference),
+        separability,
     };
-    let parameters = data.values.len() - fit.left_out - fit.degrees_of_freedom as usize;
+    let parameters = data.values.len() - fit.left_out.total() - fit.degrees_of_freedom as usize;
     model.residuals = residuals(&model, &data, parameters)?.1;
     Ok(model)
+}
+
+/// Fits the terms; where no specular one is seen, the diffuse one alone over every geometry at which it has a value.
+fn fit_reduced(
+    data: &Reduced,
+    reference: &Reference,
+    terms: Terms,
+    options: &FitOptions,
+    geometry_error: impl Fn(SetError) -> FitError,
+    data_error: impl Fn(DataError) -> FitError,
+) -> Result<(GeometrySet, Fit), FitError> {
+    let sigma = || data.sigma.as_ref().map(|sigma| sigma.view());
+    let fitted = |set: GeometrySet, terms: Terms| match Fitter::new(&set, terms).fit_bands(data.values.view(), sigma())
+    {
+        Ok(fit) => Ok((set, fit)),
+        Err(source) => Err(data_error(source)),
+    };
+    let diffuse = || GeometrySet::diffuse(&data.geometry, reference).map_err(&geometry_error);
+    if !terms.specular {
+        return fitted(diffuse()?, terms);
+    }
+    let set = GeometrySet::new(&data.geometry, reference, options.distribution, options.denominator)
+        .map_err(&geometry_error)?;
+    let (set, fit) = fitted(set, terms)?;
+    if fit.has_specular() || set.undefined().is_empty() || !terms.diffuse {
+        return Ok((set, fit));
+    }
+    let (set, alone) = fitted(diffuse()?, Terms { diffuse: true, specular: false })?;
+    Ok((set, Fit { specular_gain: fit.specular_gain, evaluations: fit.evaluations, ..alone }))
 }
 
 fn method(fit: &Fit) -> String {

@@ -15,7 +15,9 @@
 mod curvature;
 mod geometry_set;
 mod identifiability;
+mod left_out;
 mod linear;
+mod magnitude;
 mod measurement;
 mod outcome;
 mod separability;
@@ -23,7 +25,8 @@ mod solve;
 mod statistics;
 
 pub use geometry_set::{GeometrySet, SetError};
+pub use left_out::LeftOut;
 pub use measurement::{FitError, FitOptions, fit_measurement};
 pub use outcome::{BandFit, Fit, Stop};
-pub use separability::separability;
+pub use separability::{NotSeparable, separability};
 pub use solve::{DataError, Fitter, Terms};

@@ -1,5 +1,7 @@
 //! What a fit returns: an outcome is a value, also when the data cannot tell.
 
+use super::left_out::LeftOut;
+
 /// Why a fit stopped.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
@@ -44,7 +46,8 @@ pub struct BandFit {
     pub chi_square: f64,
     /// Number of values used.
     pub count: usize,
-    /// Covariance of (diffuse, intensity, roughness, index); NaN where the data cannot tell, 0 where not fitted.
+    /// Covariance of (diffuse, intensity, roughness, index); NaN where the data cannot tell or the parameter ended on a
+    /// bound, 0 where not fitted.
     pub covariance: [[f64; 4]; 4],
 }
 
@@ -68,10 +71,13 @@ pub struct Fit {
     pub log_sigma: [f64; 2],
     /// Why the fit stopped.
     pub stop: Stop,
+    /// True for roughness and index where the data ask for a value beyond the searched box: the number is the edge, and
+    /// its uncertainty is NaN.
+    pub at_bound: [bool; 2],
     /// Number of evaluations after the starting grid.
     pub evaluations: usize,
-    /// Indices of values that were not used: not finite, without a positive uncertainty, or where a term is undefined.
-    pub left_out: usize,
+    /// How many values were not used, by reason.
+    pub left_out: LeftOut,
 }
 
 impl Fit {

@@ -18,19 +18,32 @@ struct Cell {
     value: f64,
 }
 
-/// The check over data whose geometries all lie in the plane; `None` for others, or where fewer than three angles of
-/// incidence and of viewing were measured. Several emission values are averaged first.
+/// Why the check is not made.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum NotSeparable {
+    /// A geometry leaves the plane, or fewer than three angles of incidence or of viewing were measured.
+    #[error("separability: the geometries are no table of in-plane angles")]
+    NoTable,
+    /// What the departures are counted in is 0 or no number.
+    #[error("separability: undefined, because {0}")]
+    Undefined(&'static str),
+}
+
+/// The check over data whose geometries all lie in the plane, at three angles of incidence and of viewing or more. Several
+/// emission values are averaged first.
 ///
 /// The second average is taken after division by the fitted cosine: the retro gap lacks another incidence angle for
 /// every viewing angle, so that a plain average over incidence would not be constant even for a perfect diffuser.
-#[must_use]
-pub fn separability(data: &Reduced, reference: &Reference) -> Option<Separability> {
+///
+/// # Errors
+/// [`NotSeparable`] when there is no such table, or nothing that a departure could be relative to.
+pub fn separability(data: &Reduced, reference: &Reference) -> Result<Separability, NotSeparable> {
     let mut raw = Vec::with_capacity(data.geometry.len());
     for (row, geometry) in data.geometry.iter().enumerate() {
-        let (theta_i, theta_v) = geometry.signed_deg()?;
+        let (theta_i, theta_v) = geometry.signed_deg().ok_or(NotSeparable::NoTable)?;
         let column = data.values.column(row);
         let mean = column.sum() / column.len() as f64;
-        let lit = reference.lit_fraction(geometry).ok()?;
+        let lit = reference.lit_fraction(geometry).map_err(|_| NotSeparable::NoTable)?;
         if mean.is_finite() {
             raw.push((theta_i, theta_v, mean * lit));
         }
@@ -38,7 +51,7 @@ pub fn separability(data: &Reduced, reference: &Reference) -> Option<Separabilit
     let theta_i_deg = distinct(raw.iter().map(|cell| cell.0));
     let theta_v_deg = distinct(raw.iter().map(|cell| cell.1));
     if theta_i_deg.len() < 3 || theta_v_deg.len() < 3 {
-        return None;
+        return Err(NotSeparable::NoTable);
     }
     let index = |list: &[f64], angle: f64| list.iter().position(|a| *a == angle);
     let cells: Vec<Cell> = raw
@@ -47,7 +60,23 @@ pub fn separability(data: &Reduced, reference: &Reference) -> Option<Separabilit
             Some(Cell { incidence: index(&theta_i_deg, i)?, viewing: index(&theta_v_deg, v)?, value })
         })
         .collect();
-    Some(check(theta_i_deg, theta_v_deg, &cells))
+    if cells.iter().all(|cell| cell.value == 0.0) {
+        return Err(NotSeparable::Undefined("every value of the table is 0"));
+    }
+    defined(check(theta_i_deg, theta_v_deg, &cells))
+}
+
+/// The check where each of its numbers is one.
+fn defined(check: Separability) -> Result<Separability, NotSeparable> {
+    let numbers = [
+        (check.cosine_relative_rms, "the average over viewing has no part that follows a cosine"),
+        (check.constancy_relative_rms, "the average over incidence is 0"),
+        (check.rank_one_relative_rms, "the values have no finite mean square"),
+    ];
+    match numbers.into_iter().find(|(number, _)| !number.is_finite()) {
+        Some((_, reason)) => Err(NotSeparable::Undefined(reason)),
+        None => Ok(check),
+    }
 }
 
 fn check(theta_i_deg: Vec<f64>, theta_v_deg: Vec<f64>, cells: &[Cell]) -> Separability {

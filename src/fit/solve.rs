@@ -4,7 +4,9 @@ use ndarray::{ArrayView1, ArrayView2, Axis};
 
 use super::curvature::{Columns, Curvature, Point, amplitudes, evaluate};
 use super::geometry_set::{GeometrySet, INDEX_BOX, INDEX_NODES};
+use super::left_out::{LeftOut, reason};
 use super::linear::{Amplitudes, Gram};
+use super::magnitude;
 use super::outcome::{BandFit, Fit, Stop};
 use super::statistics;
 
@@ -29,7 +31,7 @@ pub struct Terms {
 }
 
 /// Data that cannot be fitted.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum DataError {
     /// Arrays of another length than the geometries.
     #[error("{found} values for {expected} geometries")]
@@ -40,12 +42,25 @@ pub enum DataError {
         expected: usize,
     },
     /// Fewer usable values than parameters.
-    #[error("{usable} usable values for {parameters} parameters; a fit needs more values than parameters")]
+    #[error("{usable} usable values for {parameters} parameters ({left_out}); a fit needs more values than parameters")]
     TooFew {
         /// Values that are finite, have a positive uncertainty, and a geometry where every term is defined.
         usable: usize,
         /// Number of parameters.
         parameters: usize,
+        /// The others, by reason.
+        left_out: LeftOut,
+    },
+    /// A number whose square is none.
+    #[error(
+        "a {what} of {found:e}: its square is beyond the range of numbers; expected magnitudes from 1e-60 to 1e60 (or 0): \
+         state the values in another unit"
+    )]
+    OutOfRange {
+        /// Which number.
+        what: &'static str,
+        /// The number.
+        found: f64,
     },
     /// No term to fit.
     #[error("no term to fit")]
@@ -63,6 +78,7 @@ pub(super) struct Band {
     /// Inner products that do not depend on the specular term.
     pub(super) gram: Gram,
     pub(super) count: usize,
+    left_out: LeftOut,
 }
 
 /// Fits scans over one set of geometries.
@@ -77,7 +93,17 @@ struct Polished {
     point: Point,
     curvature: Curvature,
     stop: Stop,
+    /// Which of (roughness, index) are held on the edge of the box.
+    held: [bool; 2],
     evaluations: usize,
+}
+
+impl Polished {
+    /// A polish that found no step to take with these parameters free.
+    fn ended(point: Point, curvature: Curvature, free: [bool; 2], evaluations: usize) -> Self {
+        let stop = if free == [true, true] { Stop::Converged } else { Stop::AtBound };
+        Self { point, curvature, stop, held: free.map(|free| !free), evaluations }
+    }
 }
 
 impl<'a> Fitter<'a> {
@@ -112,14 +138,15 @@ impl<'a> Fitter<'a> {
                 return Err(DataError::Length { found, expected });
             }
         }
+        magnitude::check(values, sigma)?;
         let unit = smallest_sigma(sigma).powi(-2);
         let bands: Vec<Band> = (0..values.nrows()).map(|b| self.band(values, sigma, b, unit.sqrt())).collect();
         let usable: usize = bands.iter().map(|band| band.count).sum();
+        let left_out = self.left_out(&bands);
         let parameters = self.parameters(bands.len());
         if usable <= parameters || bands.is_empty() {
-            return Err(DataError::TooFew { usable, parameters });
+            return Err(DataError::TooFew { usable, parameters, left_out });
         }
-        let left_out = values.len() - usable;
         let unit = sigma.is_some().then_some(unit);
         Ok(self.solve(&bands, unit, (usable - parameters) as f64, left_out))
     }
@@ -127,6 +154,20 @@ impl<'a> Fitter<'a> {
     fn parameters(&self, bands: usize) -> usize {
         let linear = usize::from(self.terms.diffuse) + usize::from(self.terms.specular);
         linear * bands + 2 * usize::from(self.terms.specular)
+    }
+
+    /// What takes no part, summed over the emission values.
+    fn left_out(&self, bands: &[Band]) -> LeftOut {
+        let mut sum = LeftOut { undefined_geometry: self.set.undefined().len() * bands.len(), ..LeftOut::default() };
+        for LeftOut { no_value, undefined_geometry, zero_sigma, unknown_sigma } in
+            bands.iter().map(|band| band.left_out)
+        {
+            sum.no_value += no_value;
+            sum.undefined_geometry += undefined_geometry;
+            sum.zero_sigma += zero_sigma;
+            sum.unknown_sigma += unknown_sigma;
+        }
+        sum
     }
 
     /// Sorts and weights one emission value; `root_unit` is 1 over the smallest sigma, so that no weight overflows.
@@ -139,11 +180,14 @@ impl<'a> Fitter<'a> {
             value: Vec::with_capacity(n),
             gram: Gram::default(),
             count: 0,
+            left_out: LeftOut::default(),
         };
         for (&input, &diffuse) in self.set.order.iter().zip(&self.set.diffuse) {
             let value = values[(b, input)];
             let relative = sigma.map_or(1.0, |sigma| root_unit * sigma[(b, input)]);
-            let used = value.is_finite() && relative > 0.0 && relative.is_finite();
+            let reason = reason(value, sigma.map(|sigma| sigma[(b, input)]));
+            let used = reason.is_none();
+            reason.into_iter().for_each(|reason| band.left_out.add(reason));
             let weight = if used { (relative * relative).recip() } else { 0.0 };
             let value = if used { value } else { 0.0 };
             let diffuse = if self.terms.diffuse { diffuse } else { 0.0 };
@@ -159,7 +203,7 @@ impl<'a> Fitter<'a> {
         band
     }
 
-    fn solve(&self, bands: &[Band], unit: Option<f64>, freedom: f64, left_out: usize) -> Fit {
+    fn solve(&self, bands: &[Band], unit: Option<f64>, freedom: f64, left_out: LeftOut) -> Fit {
         let diffuse_only: f64 = bands.iter().map(|band| band.gram.solve().chi_square).sum();
         let polished = if self.terms.specular { self.specular(bands, freedom) } else { None };
         let Some(polished) = polished else {
@@ -184,6 +228,7 @@ impl<'a> Fitter<'a> {
             specular_gain: gain,
             log_sigma: [f64::NAN; 2],
             stop: polished.stop,
+            at_bound: polished.held,
             evaluations: polished.evaluations,
             left_out,
         };
@@ -196,7 +241,7 @@ impl<'a> Fitter<'a> {
         bands: &[Band],
         unit: Option<f64>,
         freedom: f64,
-        left_out: usize,
+        left_out: LeftOut,
         gain: f64,
         evaluations: usize,
     ) -> Fit {
@@ -211,6 +256,7 @@ impl<'a> Fitter<'a> {
             specular_gain: gain,
             log_sigma: [f64::NAN; 2],
             stop: Stop::Linear,
+            at_bound: [false; 2],
             evaluations,
             left_out,
         };
@@ -326,8 +372,7 @@ impl<'a> Fitter<'a> {
             let threshold = (TOLERANCE * current.chi_square / freedom).max(current.noise);
             let decrease = -(current.gradient[0] * undamped[0] + current.gradient[1] * undamped[1]);
             if decrease.is_nan() || decrease <= threshold {
-                let stop = if free == [true, true] { Stop::Converged } else { Stop::AtBound };
-                return Polished { point, curvature: current, stop, evaluations };
+                return Polished::ended(point, current, free, evaluations);
             }
             let trial = Point {
                 log: std::array::from_fn(|k| {
@@ -342,13 +387,13 @@ impl<'a> Fitter<'a> {
                 damping = (damping * 0.1).max(1e-12);
             } else if current.chi_square - next.chi_square > -threshold {
                 // No decrease left that rounding would let through.
-                let stop = if free == [true, true] { Stop::Converged } else { Stop::AtBound };
-                return Polished { point, curvature: current, stop, evaluations: evaluations + 1 };
+                return Polished::ended(point, current, free, evaluations + 1);
             } else {
                 damping = (damping * 10.0).max(1e-3);
             }
         }
-        Polished { point, curvature: current, stop: Stop::EvaluationLimit, evaluations: MOST_EVALUATIONS }
+        let held = free_parameters(&point, &current, &bounds).map(|free| !free);
+        Polished { point, curvature: current, stop: Stop::EvaluationLimit, held, evaluations: MOST_EVALUATIONS }
     }
 }
 

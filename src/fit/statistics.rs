@@ -37,11 +37,16 @@ pub(super) fn complete(set: &GeometrySet, bands: &[Band], columns: Option<&Colum
     for (band, (r, norms)) in fit.bands.iter_mut().zip(&triangles) {
         band.covariance = covariance(r, norms, &common, unit_or_residual);
         to_parameters(&mut band.covariance, fit.roughness, fit.index_minus_one, columns.is_some());
+        let [roughness, index] = fit.at_bound;
+        let amplitude = |k: usize, value: f64| norms[k] > 0.0 && value == 0.0;
+        let at_bound = [amplitude(0, band.diffuse), amplitude(1, band.intensity), roughness, index];
+        forget(&mut band.covariance, at_bound);
         band.chi_square *= unit.unwrap_or(1.0);
     }
     fit.chi_square = weighted * unit.unwrap_or(1.0);
     if columns.is_some() {
-        fit.log_sigma = [0, 1].map(|k| (common[k][k] / unit_or_residual).sqrt());
+        let sigma = |k: usize| (common[k][k] / unit_or_residual).sqrt();
+        fit.log_sigma = [0, 1].map(|k| if fit.at_bound[k] { f64::NAN } else { sigma(k) });
     }
 }
 
@@ -199,6 +204,17 @@ fn to_parameters(covariance: &mut [[f64; 4]; 4], roughness: f64, index_minus_one
     for (i, row) in covariance.iter_mut().enumerate() {
         for (j, value) in row.iter_mut().enumerate() {
             *value = finite_times(*value, scale[i] * scale[j]);
+        }
+    }
+}
+
+/// A parameter on its bound is not free, and the curvature there is not its uncertainty: no number is given for it.
+fn forget(covariance: &mut [[f64; 4]; 4], at_bound: [bool; 4]) {
+    for (i, row) in covariance.iter_mut().enumerate() {
+        for (j, value) in row.iter_mut().enumerate() {
+            if at_bound[i] || at_bound[j] {
+                *value = f64::NAN;
+            }
         }
     }
 }

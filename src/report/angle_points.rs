@@ -3,7 +3,7 @@
 use ndarray::{Array2, ArrayView1};
 
 use super::ReportError;
-use crate::dataset::{Document, Model, Reduction, reduce, residuals};
+use crate::dataset::{Document, Model, Reduced, Reduction, reduce, residuals};
 use crate::quantity::Geometry;
 
 /// The numbers that a model was fitted to, one per geometry, with what the model predicts.
@@ -38,17 +38,24 @@ impl AnglePoints {
             reduce(document, measurement, reduction).map_err(|source| ReportError::Reduce { model: name(), source })?;
         let (residual, _) =
             residuals(model, &data, 0).map_err(|source| ReportError::Terms { model: name(), source })?;
+        let points = Self::measured(&data);
+        let residual = column(&residual, strongest(&data.values));
+        let predicted = points.measured.iter().zip(residual).map(|(value, residual)| value - residual).collect();
+        Ok(Self { predicted, ..points })
+    }
+
+    /// The numbers of a scan at its strongest emission value, with nothing predicted.
+    pub(super) fn measured(data: &Reduced) -> Self {
         let emission = strongest(&data.values);
-        let wavelengths = data.emission.wavelengths();
         let measured = column(&data.values, emission);
-        let predicted = measured.iter().zip(column(&residual, emission)).map(|(value, residual)| value - residual);
-        Ok(Self {
-            predicted: predicted.collect(),
-            sigma: data.sigma.as_ref().map_or(vec![f64::NAN; measured.len()], |sigma| column(sigma, emission)),
+        let unknown = vec![f64::NAN; measured.len()];
+        Self {
+            geometry: data.geometry.clone(),
+            sigma: data.sigma.as_ref().map_or(unknown.clone(), |sigma| column(sigma, emission)),
+            predicted: unknown,
             measured,
-            geometry: data.geometry,
-            wavelength_nm: wavelengths.and_then(|nm| nm.get(emission)).copied(),
-        })
+            wavelength_nm: data.emission.wavelengths().and_then(|nm| nm.get(emission)).copied(),
+        }
     }
 
     /// Checks that there is one of each per geometry.

@@ -73,6 +73,24 @@ pub enum ReportError {
         /// Why.
         source: ReduceError,
     },
+    /// The numbers of a scan without a model cannot be formed.
+    #[error("map over the angles")]
+    Scan {
+        /// Why.
+        source: ReduceError,
+    },
+    /// Too few angles for a map.
+    #[error(
+        "{figure}: {incidences} x {viewings} different angles of incidence and of viewing; a map needs two of each or more"
+    )]
+    NoTable {
+        /// Which figure.
+        figure: String,
+        /// Different angles of incidence.
+        incidences: usize,
+        /// Different angles of viewing.
+        viewings: usize,
+    },
     /// The model cannot be evaluated.
     #[error("model `{model}`: it cannot be evaluated")]
     Terms {

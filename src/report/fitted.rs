@@ -6,9 +6,9 @@ use super::curve::{CurveText, Points, line_in_band};
 use super::frame::with_unit;
 use super::html::number;
 use super::separability::{mean_over_incidence, mean_over_viewing};
-use super::{Figure, ReportError, angle_map, histogram, interpolated_map, residual_map, surface};
-use crate::dataset::{Document, FittedParameter, FittedTerm, Measurement, Model};
-use crate::quantity::EmissionAxis;
+use super::{Figure, ReportError, angle_map, histogram, interpolated_map, residual_map, subject, surface};
+use crate::dataset::{Document, FittedParameter, FittedTerm, Model};
+use crate::quantity::{EmissionAxis, QuantityKind};
 
 /// Figures, and why others could not be drawn.
 #[derive(Debug, Default)]
@@ -26,21 +26,31 @@ impl Drawn {
             Err(error) => self.not_drawn.push(error.in_full()),
         }
     }
+
+    /// The measured values over both angles, three ways.
+    pub(super) fn take_maps(&mut self, map: &AngleMap, subject: &str) {
+        self.take(angle_map(map, &format!("{subject}: measured")));
+        self.take(surface(map, &format!("{subject}: measured, gaps interpolated")));
+        self.take(interpolated_map(map, &format!("{subject}: measured, gaps interpolated")));
+    }
+
+    /// The same figures under names that start with `prefix`.
+    pub(super) fn prefixed(mut self, prefix: &str) -> Self {
+        self.figures = self.figures.into_iter().map(|figure| figure.prefixed(prefix)).collect();
+        self
+    }
 }
 
 /// The figures of a model with the numbers it was fitted to (for a spectral fit, those of one wavelength). What cannot
 /// be drawn (a map of directions out of the plane, say) is listed with the reason, and the rest is drawn.
 #[must_use]
 pub fn fitted_figures(document: &Document, model: &Model, points: &AnglePoints) -> Drawn {
-    let subject = subject(document, model);
+    let measurement = document.measurement(model.measurement.as_str());
+    let subject = measurement.map_or(model.measurement.to_string(), |one| subject::of_sample(document, one));
     let quantity = quantity_label(document, model, points.wavelength_nm);
     let mut drawn = Drawn::default();
     match AngleMap::from_points(points, &points.measured, &quantity, &model.unit) {
-        Ok(map) => {
-            drawn.take(angle_map(&map, &format!("{subject}: measured")));
-            drawn.take(surface(&map, &format!("{subject}: measured, gaps interpolated")));
-            drawn.take(interpolated_map(&map, &format!("{subject}: measured, gaps interpolated")));
-        }
+        Ok(map) => drawn.take_maps(&map, &subject),
         Err(error) => drawn.not_drawn.push(error.in_full()),
     }
     if let Some(separability) = &model.separability {
@@ -49,9 +59,7 @@ pub fn fitted_figures(document: &Document, model: &Model, points: &AnglePoints) 
     }
     take_residuals(&mut drawn, model, points, &subject);
     take_parameter_spectra(&mut drawn, model, &subject);
-    let prefix = model.id.as_str();
-    drawn.figures = drawn.figures.into_iter().map(|figure| figure.prefixed(prefix)).collect();
-    drawn
+    drawn.prefixed(model.id.as_str())
 }
 
 fn take_residuals(drawn: &mut Drawn, model: &Model, points: &AnglePoints, subject: &str) {
@@ -116,36 +124,29 @@ fn parameter_spectrum(
     line_in_band(&points, None, &text)
 }
 
-/// What the figures are of: the sample's title, else the measurement's, else its id; and that it is simulated.
-fn subject(document: &Document, model: &Model) -> String {
-    let measurement = document.measurement(model.measurement.as_str());
-    let sample = measurement
-        .and_then(|measurement| measurement.sample.as_ref())
-        .and_then(|id| document.samples.iter().find(|sample| sample.id == *id));
-    let title = sample
-        .and_then(|sample| sample.title.clone())
-        .or_else(|| measurement.and_then(|measurement| measurement.title.clone()))
-        .unwrap_or_else(|| model.measurement.to_string());
-    if sample.is_some_and(|sample| sample.simulated) { format!("{title} (simulated)") } else { title }
-}
-
 /// The fitted quantity in words, with its band.
 fn quantity_label(document: &Document, model: &Model, wavelength_nm: Option<f64>) -> String {
-    let kind = document.measurement(model.measurement.as_str()).map(quantity_words).unwrap_or("value");
-    if let Some(nm) = wavelength_nm {
-        return format!("{kind} at {nm} nm");
+    let measurement = document.measurement(model.measurement.as_str());
+    let words = measurement.map_or("value", |measurement| quantity_words(measurement.quantity.kind));
+    match (wavelength_nm, &model.emission, model.reduction.as_str()) {
+        (None, EmissionAxis::Band { band: None }, "luminance") => "luminance factor".to_owned(),
+        _ => with_band(words, &model.emission, wavelength_nm),
     }
-    match (&model.emission, model.reduction.as_str()) {
-        (EmissionAxis::Band { band: Some(band) }, _) => format!("{kind}, {}–{} nm", band.from_nm, band.to_nm),
-        (EmissionAxis::Band { band: None }, "luminance") => "luminance factor".to_owned(),
-        _ => kind.to_owned(),
+}
+
+/// A quantity in words with its wavelength or band.
+pub(super) fn with_band(words: &str, emission: &EmissionAxis, wavelength_nm: Option<f64>) -> String {
+    match (wavelength_nm, emission) {
+        (Some(nm), _) => format!("{words} at {nm} nm"),
+        (None, EmissionAxis::Band { band: Some(band) }) => format!("{words}, {}–{} nm", band.from_nm, band.to_nm),
+        _ => words.to_owned(),
     }
 }
 
 /// A quantity as an axis names it.
-pub(super) fn quantity_words(measurement: &Measurement) -> &'static str {
-    use crate::quantity::QuantityKind as Kind;
-    match measurement.quantity.kind {
+pub(super) fn quantity_words(kind: QuantityKind) -> &'static str {
+    use QuantityKind as Kind;
+    match kind {
         Kind::SpectralRadiance => "spectral radiance",
         Kind::SpectralIrradiance => "spectral irradiance",
         Kind::BandRadiance => "band radiance",

@@ -19,9 +19,11 @@ mod html;
 mod map;
 mod page;
 mod scale;
+mod scan;
 mod separability;
 mod spectrum;
 mod spline;
+mod subject;
 mod surface;
 
 pub use angle_map::AngleMap;
@@ -33,5 +35,6 @@ pub use fitted::{Drawn, fitted_figures};
 pub use histogram::histogram;
 pub use map::{angle_map, interpolated_map, residual_map};
 pub use page::{Pictures, page};
+pub use scan::scan_figures;
 pub use spectrum::measurement_figures;
 pub use surface::surface;

@@ -1,7 +1,7 @@
 //! One HTML page about a document: self-contained, without scripts, for light and dark screens.
 
 use super::html::{Html, escaped, number, value_and_uncertainty};
-use super::{AnglePoints, Drawn, Figure, fitted_figures, measurement_figures};
+use super::{AnglePoints, Drawn, Figure, fitted_figures, measurement_figures, scan_figures};
 use crate::dataset::{Document, FittedParameter, FittedTerm, Measurement, Model, Provenance, Receipt, Sample};
 use crate::quantity::{EmissionAxis, Flag};
 
@@ -29,7 +29,7 @@ impl Pictures {
         };
         Self {
             models: document.models.iter().map(drawn).collect(),
-            measurements: document.measurements.iter().map(|one| measurement_figures(document, one)).collect(),
+            measurements: document.measurements.iter().map(|one| measured(document, one)).collect(),
         }
     }
 
@@ -37,6 +37,15 @@ impl Pictures {
     pub fn figures(&self) -> impl Iterator<Item = &Figure> {
         self.models.iter().chain(&self.measurements).flat_map(|drawn| &drawn.figures)
     }
+}
+
+/// A measurement over the angles, where no model shows it so, and over the wavelengths.
+fn measured(document: &Document, measurement: &Measurement) -> Drawn {
+    let mut drawn = scan_figures(document, measurement);
+    let Drawn { figures, not_drawn } = measurement_figures(document, measurement);
+    drawn.figures.extend(figures);
+    drawn.not_drawn.extend(not_drawn);
+    drawn
 }
 
 /// The page about a document: what it holds, the fitted parameters, what the data cannot tell, the figures, and what

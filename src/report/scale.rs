@@ -59,6 +59,36 @@ impl Scale {
         Self::linear_over(sorted)
     }
 
+    /// The same scale, reaching up to the next number that about `count` ticks name, so that the highest value has a tick
+    /// at its height or just above.
+    pub(super) fn ending_on_tick(self, count: usize) -> Self {
+        // A longer scale may have wider steps; it settles after one or two.
+        let mut scale = self;
+        for _ in 0..4 {
+            scale = scale.reaching_next_tick(count);
+        }
+        scale
+    }
+
+    fn reaching_next_tick(self, count: usize) -> Self {
+        match self {
+            Self::Linear { from, to } => {
+                let step = nice_step((to - from) / count.max(1) as f64);
+                let next = (to / step - 1e-9).ceil() * step;
+                if next.is_finite() { Self::Linear { from, to: next.max(to) } } else { self }
+            }
+            Self::Logarithmic { from, to } => {
+                let decade = to.log10().floor() as i32;
+                let factors = logarithmic_factors(from, to);
+                let powers = (decade..=decade + 1).map(|decade| 10f64.powi(decade));
+                let next = powers
+                    .flat_map(|power| factors.iter().map(move |factor| factor * power))
+                    .find(|tick| *tick >= to * (1.0 - 1e-9) && tick.is_finite());
+                Self::Logarithmic { from, to: next.map_or(to, |next| next.max(to)) }
+            }
+        }
+    }
+
     /// Where a number stands: 0 at `from`, 1 at `to`.
     pub(super) fn position(&self, value: f64) -> f64 {
         match *self {
@@ -114,9 +144,13 @@ fn nice_step(least: f64) -> f64 {
     factor * power
 }
 
+/// Which multiples of the powers of ten have ticks.
+fn logarithmic_factors(from: f64, to: f64) -> &'static [f64] {
+    if (to / from).log10() > 3.0 { &[1.0] } else { &[1.0, 2.0, 5.0] }
+}
+
 fn logarithmic_ticks(from: f64, to: f64) -> Vec<Tick> {
-    let decades = (to / from).log10();
-    let factors: &[f64] = if decades > 3.0 { &[1.0] } else { &[1.0, 2.0, 5.0] };
+    let factors = logarithmic_factors(from, to);
     let (first, last) = (from.log10().floor() as i32, to.log10().ceil() as i32);
     (first..=last)
         .flat_map(|decade| factors.iter().map(move |factor| factor * 10f64.powi(decade)))
@@ -176,6 +210,24 @@ mod tests {
         assert_eq!(labels(Scale::Linear { from: 0.95, to: 1.05 }), ["0.96", "0.98", "1.00", "1.02", "1.04"]);
         assert_eq!(labels(Scale::Linear { from: 0.0, to: 5e-7 })[1], "1·10⁻⁷");
         assert_eq!(labels(Scale::Logarithmic { from: 0.15, to: 6.0 }), ["0.2", "0.5", "1", "2", "5"]);
+    }
+
+    #[test]
+    fn a_scale_reaches_up_to_a_tick_of_its_own() {
+        let scales = [
+            (Scale::Logarithmic { from: 0.16, to: 4.4 }, "5"),
+            (Scale::Logarithmic { from: 0.004, to: 3.9 }, "10"),
+            (Scale::Logarithmic { from: 0.2, to: 5.0 }, "5"),
+            (Scale::Linear { from: 0.0, to: 1.37 }, "1.5"),
+            (Scale::Linear { from: 0.3, to: 3.3 }, "4"),
+        ];
+        for (scale, top) in scales {
+            let reaching = scale.ending_on_tick(6);
+            let ticks = reaching.ticks(6);
+            let last = ticks.last().unwrap();
+            assert_eq!(last.label, top, "{reaching:?}");
+            assert!((reaching.position(last.value) - 1.0).abs() < 1e-9, "{reaching:?}");
+        }
     }
 
     #[test]

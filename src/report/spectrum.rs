@@ -3,6 +3,7 @@
 use super::curve::{CurveText, Points, line_in_band};
 use super::fitted::{Drawn, quantity_words};
 use super::frame::with_unit;
+use super::subject;
 use crate::dataset::{Document, Measurement};
 
 /// The mean spectrum of a measurement that has wavelengths, in a band of its uncertainty.
@@ -11,8 +12,8 @@ pub fn measurement_figures(document: &Document, measurement: &Measurement) -> Dr
     let mut drawn = Drawn::default();
     let Some(nm) = measurement.emission.wavelengths().filter(|nm| nm.len() > 1) else { return drawn };
     let spectrum = mean_spectrum(measurement, nm);
-    let subject = subject(document, measurement);
-    let quantity = quantity_words(measurement);
+    let subject = subject::of_measurement(document, measurement);
+    let quantity = quantity_words(measurement.quantity.kind);
     let rows = measurement.acquisitions.len();
     let text = CurveText {
         name: "spectrum".to_owned(),
@@ -28,16 +29,6 @@ pub fn measurement_figures(document: &Document, measurement: &Measurement) -> Dr
     };
     drawn.take(line_in_band(&spectrum, None, &text).map(|figure| figure.prefixed(measurement.id.as_str())));
     drawn
-}
-
-fn subject(document: &Document, measurement: &Measurement) -> String {
-    let sample = measurement.sample.as_ref().and_then(|id| document.samples.iter().find(|sample| sample.id == *id));
-    let title = measurement
-        .title
-        .clone()
-        .or_else(|| sample.and_then(|sample| sample.title.clone()))
-        .unwrap_or_else(|| measurement.id.to_string());
-    if sample.is_some_and(|sample| sample.simulated) { format!("{title} (simulated)") } else { title }
 }
 
 fn mean_spectrum(measurement: &Measurement, nm: &[f64]) -> Points {

@@ -16,12 +16,17 @@ const WIDTH: f64 = 760.0;
 /// Half the side of the floor, and the height of the tallest value, on the sheet.
 const HALF_SIDE: f64 = 230.0;
 const HEIGHT: f64 = 250.0;
+/// About so many numbers stand at the upright axis.
+const HEIGHT_TICKS: usize = 6;
 /// The floor is turned by this azimuth, so that the retro diagonal runs away from the reader and the mirror peaks stand
 /// left and right, hiding nothing; and seen from this elevation. Degrees.
 const AZIMUTH: f64 = 42.0;
 const ELEVATION: f64 = 32.0;
 /// How much white is mixed into what was not measured.
 const PALE: f64 = 0.62;
+/// The sides of the surface.
+const SIDE: Color = Color::Rgb(0xd9, 0xd9, 0xd9);
+const OUTLINE: Color = Color::Rgb(0x40, 0x40, 0x40);
 
 /// The measured values as a surface over both angles. Where a gap lies between measured values a spline closes it for
 /// the eye: drawn pale, labelled, and never fitted; at the ends of the scan the surface stays open.
@@ -31,7 +36,9 @@ const PALE: f64 = 0.62;
 pub fn surface(map: &AngleMap, title: &str) -> Result<Figure, ReportError> {
     map.check()?;
     let values: Vec<f64> = map.finite().collect();
-    let scale = Scale::for_colours(&values).ok_or_else(|| ReportError::Empty { figure: map.label.clone() })?;
+    let scale = Scale::for_colours(&values)
+        .ok_or_else(|| ReportError::Empty { figure: map.label.clone() })?
+        .ending_on_tick(HEIGHT_TICKS);
     let subtitle = "pale: leans on interpolated points, drawn and never fitted";
     let labels = Labels { title, subtitle, x: "", y: "" };
     let view = View::new(map, scale, labels.height(WIDTH - 100.0));
@@ -39,6 +46,7 @@ pub fn surface(map: &AngleMap, title: &str) -> Result<Figure, ReportError> {
     draw_titles(&mut canvas, WIDTH - 100.0, &labels);
     view.draw_floor(&mut canvas);
     view.draw_facets(&mut canvas, map);
+    view.draw_sides(&mut canvas, map);
     view.draw_axes(&mut canvas, &with_unit(&map.label, &map.unit));
     draw_legend(&mut canvas, view.bottom() + 72.0);
     let caption = format!(
@@ -120,7 +128,22 @@ impl View {
         for facet in facets {
             let colour = colours.colour(facet.value);
             let fill = if facet.is_measured { colour } else { pale(colour) };
-            canvas.facet(&facet.corners, fill, Color::Rgb(0x40, 0x40, 0x40));
+            canvas.facet(&facet.corners, fill, OUTLINE);
+        }
+    }
+
+    /// The two sides that face the reader, down to the floor. The facets of a peak at a corner may be seen edge-on and
+    /// so hardly at all; the sides show it. Nothing stands before them, so they are drawn last.
+    fn draw_sides(&self, canvas: &mut Canvas, map: &AngleMap) {
+        let last = map.theta_i_deg.len() - 1;
+        let left = (1..=last).map(|i| [(i - 1, 0), (i, 0)]);
+        let right = (1..map.theta_v_deg.len()).map(|v| [(last, v - 1), (last, v)]);
+        for edge in left.chain(right).filter(|edge| edge.iter().all(|cell| map.values[*cell].is_finite())) {
+            let corner = |(i, v): (usize, usize), up: f64| self.point(map.theta_i_deg[i], map.theta_v_deg[v], up).0;
+            let [from, to] = edge;
+            let up = |cell: (usize, usize)| self.height.position(map.values[cell]);
+            let corners = [corner(from, 0.0), corner(to, 0.0), corner(to, up(to)), corner(from, up(from))];
+            canvas.facet(&corners, SIDE, OUTLINE);
         }
     }
 
@@ -156,7 +179,7 @@ impl View {
             let (x, y) = corner(i_to, tick.value, 0.0);
             canvas.text((x + 6.0, y + 18.0), &tick.label, Style::new(TICK_SIZE, TextAnchor::Start));
         }
-        for tick in self.height.ticks(6) {
+        for tick in self.height.ticks(HEIGHT_TICKS) {
             let (x, y) = corner(i_from, v_from, self.height.position(tick.value));
             canvas.line((x - 5.0, y), (x, y), INK, 1.0);
             canvas.text((x - 9.0, y + 4.5), &tick.label, Style::new(TICK_SIZE, TextAnchor::End));
@@ -201,9 +224,11 @@ fn pale(colour: Color) -> Color {
 
 fn draw_legend(canvas: &mut Canvas, y: f64) {
     let measured = Color::Rgb(0x21, 0x91, 0x8c);
-    for (left, colour, text) in
-        [(24.0, measured.clone(), "between measured points"), (290.0, pale(measured), "leans on interpolated points")]
-    {
+    for (left, colour, text) in [
+        (24.0, measured.clone(), "between measured points"),
+        (270.0, pale(measured), "leans on interpolated points"),
+        (536.0, SIDE, "side, down to the floor"),
+    ] {
         let swatch = Area::new(left, y - 13.0, 24.0, 18.0);
         canvas.rectangle(swatch, colour);
         canvas.outline(swatch, INK, 0.8);

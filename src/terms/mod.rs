@@ -3,7 +3,7 @@
 //! *May use:* `quantity`. No files, no fitting.
 //!
 //! *Invariant:* below the horizon every term is exactly 0; where a one-sided limit exists it is returned, else a typed
-//! [`Undefined`]; never NaN.
+//! [`Undefined`]; whatever the parameters, never NaN and never infinite.
 
 mod denominator;
 mod distribution;
@@ -48,6 +48,12 @@ pub enum Undefined {
     /// The specular term over the light that the reference received at the same grazing incidence grows without bound.
     #[error("incidence at 90 degrees: the specular term over cos(theta_i) grows without bound")]
     Unbounded,
+    /// A value or a derivative leaves the range of numbers, as D does for a roughness of 1e-160.
+    #[error(
+        "the term or a derivative of it has no finite value for these parameters (double precision): a parameter is far \
+         beyond what any surface has"
+    )]
+    NotFinite,
     /// The reference convention does not say what to divide by.
     #[error(transparent)]
     Reference(#[from] ConversionRefused),

@@ -39,13 +39,20 @@ pub struct InvalidParameter {
     pub expected: String,
 }
 
-/// The value of a term with its derivatives in the term's parameters, in their order.
+/// The value of a term with its derivatives in the term's parameters, in their order; all finite.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Evaluation {
     /// Value.
     pub value: f64,
     /// Derivatives; entries beyond the term's parameters are 0.
     pub by: [f64; 3],
+}
+
+impl Evaluation {
+    fn finite(self) -> Result<Self, Undefined> {
+        let is_finite = self.value.is_finite() && self.by.iter().all(|derivative| derivative.is_finite());
+        if is_finite { Ok(self) } else { Err(Undefined::NotFinite) }
+    }
 }
 
 impl Term {
@@ -90,12 +97,13 @@ impl Term {
     /// fixed one. Dimensionless.
     ///
     /// # Errors
-    /// [`Undefined`] where the limit is not unique, or the reference is unstated.
+    /// [`Undefined`] where the limit is not unique, the reference is unstated, or the parameters are so far out (no
+    /// [`Term::check`] is made here) that a number overflows.
     pub fn evaluate(&self, geometry: &Geometry, reference: &Reference) -> Result<Evaluation, Undefined> {
         match self {
             Self::Lambertian { albedo: amplitude } | Self::Luminescent { factor: amplitude } => {
                 let shape = diffuse_factor(geometry, reference)?;
-                Ok(Evaluation { value: amplitude * shape, by: [shape, 0.0, 0.0] })
+                Evaluation { value: amplitude * shape, by: [shape, 0.0, 0.0] }.finite()
             }
             Self::TorranceSparrow(term) => {
                 let Specular { value, by } = term.specular(geometry)?;
@@ -106,7 +114,7 @@ impl Term {
                 if lit == 0.0 {
                     return Err(Undefined::Unbounded);
                 }
-                Ok(Evaluation { value: value / lit, by: by.map(|derivative| derivative / lit) })
+                Evaluation { value: value / lit, by: by.map(|derivative| derivative / lit) }.finite()
             }
         }
     }

@@ -59,18 +59,20 @@ impl TorranceSparrow {
     /// phi, D, G and F; below the horizon D, G and F are 0.
     ///
     /// # Errors
-    /// [`Undefined::NoHalfVector`] where L = -V.
+    /// [`Undefined::NoHalfVector`] where L = -V, [`Undefined::NotFinite`] where a parameter is so far out that a factor
+    /// overflows.
     pub fn factors(&self, geometry: &Geometry) -> Result<Factors, Undefined> {
         let half = geometry.half_angles();
         if geometry.is_below_horizon() {
             return Ok(Factors { phi_rad: half.phi, d: 0.0, g: 0.0, f: 0.0 });
         }
-        Ok(Factors {
+        let factors = Factors {
             g: masking(geometry, &half)?,
             phi_rad: half.phi,
             d: self.distribution.evaluate(&half, self.roughness).value,
             f: fresnel(&half, self.refractive_index - 1.0).value,
-        })
+        };
+        if factors.d.is_finite() && factors.f.is_finite() { Ok(factors) } else { Err(Undefined::NotFinite) }
     }
 
     pub(super) fn specular(&self, geometry: &Geometry) -> Result<Specular, Undefined> {

@@ -50,6 +50,11 @@ pub fn validate_file(path: &Path, grading: &Grading) -> Checked {
     Checked { file, status: report.status(), report }
 }
 
+/// A number with its noun.
+pub(crate) fn counted(count: usize, noun: &str) -> String {
+    format!("{count} {noun}{}", if count == 1 { "" } else { "s" })
+}
+
 /// The report on a file that the operating system does not give.
 fn not_read(error: &std::io::Error) -> Report {
     let mut found = rule("structure.hdf5").map(super::Rule::finder);
@@ -69,17 +74,13 @@ impl Checked {
     /// The verdict in one line.
     #[must_use]
     pub fn verdict(&self) -> String {
-        let counted = |severity, noun: &str| {
-            let count = self.count(severity);
-            format!("{count} {noun}{}", if count == 1 { "" } else { "s" })
-        };
         let verdict = match self.status {
             Status::Valid => "valid",
             Status::Invalid => "NOT VALID",
             Status::Unreadable => "NOT READABLE",
         };
         let [errors, warnings, notes] =
-            [(Severity::Error, "error"), (Severity::Warning, "warning"), (Severity::Info, "note")].map(|(s, n)| counted(s, n));
+            [(Severity::Error, "error"), (Severity::Warning, "warning"), (Severity::Info, "note")].map(|(severity, noun)| counted(self.count(severity), noun));
         format!("{}: {verdict} ({errors}, {warnings}, {notes})", self.file)
     }
 }

@@ -10,15 +10,20 @@ mod finding;
 pub mod form;
 mod grading;
 mod registry;
+#[cfg(feature = "write")]
+mod repair;
 mod rules;
 mod significance;
 
 use crate::container::{Limits, inspect};
 
+pub(crate) use checked::counted;
 pub use checked::{Checked, validate_file, validate_files};
 pub use context::Context;
 pub use finding::{Finding, Report, Severity, Status};
 pub use grading::{Grading, PROFILES, Profile, UnknownRule, profile};
+#[cfg(feature = "write")]
+pub use repair::{NotRepaired, Repair, repair};
 pub use registry::{CLAUSES, RULES, Rule, rule};
 
 /// Validates the bytes of a file.

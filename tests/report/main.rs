@@ -4,6 +4,7 @@
 
 mod scan;
 
+use bbrf::dataset::Derivation;
 use bbrf::quantity::{Geometry, SignHabit};
 use bbrf::report::{
     AngleMap, AnglePoints, CurveText, Drawn, Figure, Pictures, Points, ReportError, angle_map, dots_and_curve,
@@ -65,9 +66,35 @@ fn what_is_interpolated_is_marked_and_its_corners_stay_empty() {
 #[test]
 fn a_surface_is_pale_where_it_leans_on_what_was_not_measured() {
     let svg = surface(&map(), "Sheet").unwrap().to_svg();
-    // 16 x 16 facets; those at the two corners of the retro diagonal have an open end.
-    assert_eq!(svg.matches("<path ").count(), 254);
+    // 16 x 16 facets and 16 + 16 pieces of the sides; at the two corners of the retro diagonal they have an open end.
+    assert_eq!(svg.matches("<path ").count(), 254 + 30);
     assert!(svg.contains("leans on interpolated points") && svg.contains("never fitted"));
+}
+
+/// The area of each polygon of an SVG, in square units of the drawing.
+fn areas(svg: &str) -> Vec<f64> {
+    let area = |path: &str| {
+        let data = path.split(" d=\"").nth(1).unwrap().split('"').next().unwrap();
+        let numbers: Vec<f64> = data.split([' ', 'M', 'L', 'Z']).filter_map(|word| word.parse().ok()).collect();
+        let points: Vec<(f64, f64)> = numbers.chunks_exact(2).map(|pair| (pair[0], pair[1])).collect();
+        let next = points.iter().cycle().skip(1);
+        points.iter().zip(next).map(|(a, b)| a.0 * b.1 - b.0 * a.1).sum::<f64>().abs() / 2.0
+    };
+    svg.split("<path").skip(1).map(area).collect()
+}
+
+#[test]
+fn a_peak_at_a_corner_has_a_face_and_a_tick_above_it() {
+    for corner in [(16, 16), (0, 0)] {
+        let mut map = map();
+        map.values.fill(1.0);
+        map.values[corner] = 1.3;
+        let svg = surface(&map, "Sheet").unwrap().to_svg();
+        // A face from the floor to the peak: half a cell's width across, and as high as the drawing.
+        let largest = areas(&svg).into_iter().fold(0.0, f64::max);
+        assert!(largest > 1500.0, "{corner:?}: {largest}");
+        assert!(svg.contains(">1.30<") || svg.contains(">1.3<"), "the highest value has a tick");
+    }
 }
 
 #[test]
@@ -144,6 +171,62 @@ fn a_document_is_drawn_from_its_own_numbers() {
     broken.models[0].measurement = scan::id("nowhere");
     let pictures = Pictures::of(&broken);
     assert!(pictures.models[0].not_drawn[0].contains("`nowhere` is not in the document"));
+}
+
+#[test]
+fn a_scan_without_a_model_is_drawn_and_what_is_not_drawn_has_its_reason() {
+    let mut document = scan::document();
+    document.models.clear();
+    let pictures = Pictures::of(&document);
+    let all = ["factor-map", "factor-surface", "factor-map-interpolated", "factor-spectrum"];
+    assert_eq!(pictures.figures().map(Figure::name).collect::<Vec<_>>(), all);
+    let svg = pictures.figures().next().unwrap().to_svg();
+    assert_eq!(count_cells(&svg), 272);
+    assert!(svg.contains("radiance factor, 3") || svg.contains("radiance factor, 4"), "the band is named");
+    let html = page(&document, &pictures);
+    assert!(html.contains("no model was fitted to it") && html.matches("<svg ").count() == 4);
+    for acquisition in &mut document.measurements[0].acquisitions {
+        acquisition.geometry = None;
+    }
+    let pictures = Pictures::of(&document);
+    assert_eq!(pictures.figures().map(Figure::name).collect::<Vec<_>>(), ["factor-spectrum"]);
+    let reason = &pictures.measurements[0].not_drawn[0];
+    assert!(reason.contains("none of its 272 rows has a known geometry"), "{reason}");
+    for acquisition in &mut document.measurements[0].acquisitions {
+        acquisition.geometry = Geometry::from_signed(10.0, 20.0, SignHabit::MirrorAtEqual).ok();
+    }
+    let reason = &Pictures::of(&document).measurements[0].not_drawn[0];
+    assert!(reason.contains("1 x 1 different angles"), "{reason}");
+}
+
+#[test]
+fn a_radiance_from_which_a_factor_was_formed_is_shown_by_the_factor() {
+    let mut document = scan::document();
+    document.models.clear();
+    let mut radiance = document.measurements[0].clone();
+    radiance.id = scan::id("radiance");
+    document.measurements[0].derivation = Some(Derivation {
+        numerator: radiance.id.clone(),
+        numerator_row: Vec::new(),
+        reference: radiance.id.clone(),
+        reference_group: Vec::new(),
+        row_reference: Vec::new(),
+        dark: None,
+    });
+    document.measurements.push(radiance);
+    let drawn = &Pictures::of(&document).measurements[1];
+    assert_eq!(names(drawn), ["radiance-spectrum"]);
+    assert!(drawn.not_drawn[0].contains("see `factor`"), "{:?}", drawn.not_drawn);
+}
+
+#[test]
+fn that_a_sample_is_simulated_is_said_once() {
+    let mut document = scan::document();
+    document.samples[0].title = Some("Simulated scan: yellow sheet".to_owned());
+    let pictures = Pictures::of(&document);
+    for svg in pictures.figures().map(Figure::to_svg) {
+        assert!(svg.contains("Simulated scan: yellow sheet") && !svg.contains("(simulated)"));
+    }
 }
 
 #[test]

@@ -7,7 +7,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::cli::exit::{CommandResult, Outcome};
-use crate::cli::output::{print_json, print_text};
+use crate::cli::output::{print_json, print_message, print_text};
 use crate::container;
 use crate::dataset::predict;
 use crate::import::{GeometryRow, read_geometries};
@@ -88,7 +88,8 @@ pub(crate) fn run(arguments: &Arguments) -> CommandResult {
         for (emission_nm, terms) in &bands {
             let row = evaluate(geometry, *emission_nm, terms, specular);
             if let Err(problem) = &row.1 {
-                eprintln!("bbrf: {}, line {}: {problem}", arguments.geometry.display(), geometry.line);
+                let file = arguments.geometry.display();
+                print_message(&format!("bbrf: {file}, line {}: {problem}", geometry.line));
                 undefined += 1;
             }
             rows.push(row.0);
@@ -97,7 +98,7 @@ pub(crate) fn run(arguments: &Arguments) -> CommandResult {
     if arguments.json {
         print_json("bbrf:eval:1", &EvalResult { rows })?;
     } else {
-        print_text(&csv(&rows, arguments.factors));
+        print_text(&csv(&rows, arguments.factors))?;
     }
     Ok(if undefined == 0 { Outcome::Done } else { Outcome::Failed })
 }

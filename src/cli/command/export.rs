@@ -6,6 +6,8 @@ use std::path::PathBuf;
 use miette::{IntoDiagnostic, WrapErr, miette};
 
 use crate::cli::exit::{CommandResult, Outcome};
+use crate::cli::output::{print_bytes, print_message};
+use crate::cli::overwrite::refuse_overwriting;
 use crate::container;
 use crate::dataset::{Document, Measurement};
 use crate::export::{json, table_csv};
@@ -36,7 +38,9 @@ enum Format {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> CommandResult {
-    refuse_to_overwrite(arguments)?;
+    if let Some(output) = &arguments.output {
+        refuse_overwriting(output, [arguments.file.clone()])?;
+    }
     let document = container::open_verified(&arguments.file).map_err(|error| miette!("{error}"))?;
     let mut bytes = Vec::new();
     let lost = match arguments.to {
@@ -51,45 +55,15 @@ pub(crate) fn run(arguments: &Arguments) -> CommandResult {
         }
     };
     for what in lost {
-        eprintln!("bbrf: not in the table: {what}");
+        print_message(&format!("bbrf: not in the table: {what}"));
     }
     match &arguments.output {
         Some(path) => container::replace::write_whole(path, |file| file.write_all(&bytes))
             .into_diagnostic()
             .wrap_err_with(|| format!("{} cannot be written", path.display()))?,
-        // A closed pipe is the reader's decision.
-        None => drop(std::io::stdout().lock().write_all(&bytes)),
+        None => print_bytes(&bytes)?,
     }
     Ok(Outcome::Done)
-}
-
-/// The source is the only copy of what the other format does not hold.
-fn refuse_to_overwrite(arguments: &Arguments) -> Result<(), miette::Report> {
-    let Some(output) = &arguments.output else { return Ok(()) };
-    // Whatever the spelling, also through links; a target that does not exist yet is another file.
-    let same = match (arguments.file.canonicalize(), output.canonicalize()) {
-        (Ok(file), Ok(output)) => file == output || is_one_file(&file, &output),
-        _ => false,
-    };
-    if same {
-        let help = "name another file after --output";
-        return Err(miette!(help = help, "{} would be overwritten by its export", arguments.file.display()));
-    }
-    Ok(())
-}
-
-/// Two names of one file, as a hard link gives.
-#[cfg(unix)]
-fn is_one_file(a: &std::path::Path, b: &std::path::Path) -> bool {
-    use std::os::unix::fs::MetadataExt;
-    let identity = |path: &std::path::Path| path.metadata().ok().map(|metadata| (metadata.dev(), metadata.ino()));
-    identity(a).is_some_and(|a| Some(a) == identity(b))
-}
-
-/// Other systems are compared by name alone.
-#[cfg(not(unix))]
-fn is_one_file(_: &std::path::Path, _: &std::path::Path) -> bool {
-    false
 }
 
 fn chosen<'a>(document: &'a Document, id: Option<&str>) -> Result<&'a Measurement, miette::Report> {

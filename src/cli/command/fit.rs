@@ -1,5 +1,7 @@
 //! `bbrf fit`: fits the terms to a measurement of each file.
 
+mod outputs;
+
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -24,7 +26,10 @@ pub(crate) struct Arguments {
     /// The .bbrf files
     #[arg(required = true)]
     files: Vec<PathBuf>,
-    /// Write the document with its model here: a file; with several FILEs a folder
+    /// Write the document with its model here: a file; with several FILEs a folder, where each keeps its name
+    ///
+    /// This may be the FILE itself: the fit only adds its model (or replaces an older one of the same id), and the new
+    /// file takes the place of the old one in one step, whole or not at all.
     #[arg(short, long)]
     output: Option<PathBuf>,
     /// The measurement to fit; needed where a file holds several that can be
@@ -138,17 +143,14 @@ struct SeparabilityResult {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> CommandResult {
-    if let (Some(output), true) = (&arguments.output, arguments.files.len() > 1) {
-        std::fs::create_dir_all(output).map_err(|error| {
-            miette!("{}: cannot be made: {error}; with several FILEs -o is a folder", output.display())
-        })?;
-    }
+    let outputs = outputs::outputs(&arguments.files, arguments.output.as_deref())?;
     let progress = progress::bar(arguments.files.len() as u64, "fitting");
     let results: Vec<Result<FittedModel, miette::Report>> = arguments
         .files
         .par_iter()
-        .map(|file| {
-            let result = fit_file(arguments, file);
+        .zip(&outputs)
+        .map(|(file, output)| {
+            let result = fit_file(arguments, file, output.as_deref());
             progress.inc(1);
             result
         })
@@ -168,7 +170,7 @@ pub(crate) fn run(arguments: &Arguments) -> CommandResult {
     if arguments.json {
         print_json("bbrf:fit:1", &FitResult { models })?;
     } else {
-        models.iter().for_each(|model| print_text(&text(model)));
+        models.iter().try_for_each(|model| print_text(&text(model)))?;
     }
     errors.iter().for_each(report_error);
     match errors.len() {
@@ -178,7 +180,7 @@ pub(crate) fn run(arguments: &Arguments) -> CommandResult {
     }
 }
 
-fn fit_file(arguments: &Arguments, file: &Path) -> Result<FittedModel, miette::Report> {
+fn fit_file(arguments: &Arguments, file: &Path, output: Option<&Path>) -> Result<FittedModel, miette::Report> {
     let mut document = container::open_verified(file).map_err(|error| miette!("{error}"))?;
     let measurement = choose(&document, arguments.measurement.as_deref(), file)?;
     let options = FitOptions {
@@ -195,13 +197,9 @@ fn fit_file(arguments: &Arguments, file: &Path) -> Result<FittedModel, miette::R
         .map_err(|error| miette!("{}: {error}{}", file.display(), hint(&error)))?;
     let seconds = start.elapsed().as_secs_f64();
     let result = fitted_model(file, &model, seconds);
-    if let Some(output) = &arguments.output {
+    if let Some(output) = output {
         store(&mut document, model);
-        let path = match file.file_name() {
-            Some(name) if arguments.files.len() > 1 => output.join(name),
-            _ => output.clone(),
-        };
-        container::write_file(&document, &path).map_err(|error| miette!("{error}"))?;
+        container::write_file(&document, output).map_err(|error| miette!("{error}"))?;
     }
     Ok(result)
 }

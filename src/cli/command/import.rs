@@ -9,6 +9,7 @@ use serde::Serialize;
 
 use super::super::exit::{CommandResult, Outcome};
 use super::super::output;
+use super::super::overwrite::refuse_overwriting;
 use crate::container;
 use crate::dataset::{Document, Place, Receipt, Role};
 use crate::import::{Angles, Dialect, Format, Options, Settings, import};
@@ -140,23 +141,9 @@ pub(crate) fn run(arguments: &Arguments) -> CommandResult {
     if arguments.json {
         output::print_json("bbrf:import:1", &report(&document, &arguments.output))?;
     } else {
-        output::print_text(&text(&document, &arguments.output));
+        output::print_text(&text(&document, &arguments.output))?;
     }
     Ok(Outcome::Done)
-}
-
-/// An import never writes over what it reads.
-fn refuse_overwriting(output: &Path, read: impl Iterator<Item = PathBuf>) -> Result<(), miette::Report> {
-    let mut read = read.filter(|path| path.is_file());
-    match read.find(|path| is_same_file(path, output)) {
-        None => Ok(()),
-        Some(path) => Err(miette!(
-            "{}: found an input file ({}) as the file to write; expected another name; an import never writes over what it \
-             reads: correct `--output`",
-            output.display(),
-            path.display()
-        )),
-    }
 }
 
 /// The paths that the receipts' names may stand for: from here, or from a folder above an input.
@@ -169,17 +156,6 @@ fn files_read<'a>(document: &'a Document, inputs: &'a [PathBuf]) -> impl Iterato
         let above: Vec<PathBuf> = folders.iter().map(|folder| folder.join(name)).collect();
         std::iter::once(PathBuf::from(name)).chain(above)
     })
-}
-
-/// True for two names of one file, links included.
-fn is_same_file(a: &Path, b: &Path) -> bool {
-    let (Ok(a), Ok(b)) = (a.canonicalize(), b.canonicalize()) else { return false };
-    #[cfg(unix)]
-    if let (Ok(a), Ok(b)) = (a.metadata(), b.metadata()) {
-        use std::os::unix::fs::MetadataExt;
-        return (a.dev(), a.ino()) == (b.dev(), b.ino());
-    }
-    a == b
 }
 
 fn save(document: &Document, path: &Path) -> Result<(), miette::Report> {

@@ -6,7 +6,7 @@ use miette::miette;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::validate::counted;
+use crate::validate::counted;
 use crate::cli::exit::{CommandResult, Outcome};
 use crate::cli::output::{print_json, print_text};
 use crate::container::{self, Opened};
@@ -83,7 +83,7 @@ pub(crate) fn run(arguments: &Arguments) -> CommandResult {
     if arguments.json {
         print_json("bbrf:info:1", &result)?;
     } else {
-        print_text(result.text().trim_end());
+        print_text(result.text().trim_end())?;
     }
     Ok(Outcome::Done)
 }

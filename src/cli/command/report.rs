@@ -8,7 +8,8 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::cli::exit::{CommandResult, Outcome};
-use crate::cli::output::{print_json, print_text};
+use crate::cli::output::{print_json, print_message, print_text};
+use crate::cli::overwrite::refuse_overwriting;
 use crate::container;
 use crate::report::{Figure, Pictures, page};
 
@@ -40,13 +41,17 @@ pub(crate) struct ReportResult {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> CommandResult {
+    let page_path = page_path(arguments);
+    if let Some(path) = &page_path {
+        refuse_overwriting(path, [arguments.file.clone()])?;
+    }
     let document = container::open_verified(&arguments.file).map_err(|error| miette!("{error}"))?;
     let pictures = Pictures::of(&document);
     let mut result = ReportResult { page: None, figures: Vec::new(), not_drawn: not_drawn(&pictures) };
     if let Some(folder) = &arguments.figures {
-        result.figures = write_figures(folder, &pictures)?;
+        result.figures = write_figures(folder, &arguments.file, &pictures)?;
     }
-    if let Some(path) = page_path(arguments) {
+    if let Some(path) = page_path {
         write_whole(&path, page(&document, &pictures).as_bytes())?;
         result.page = Some(path.display().to_string());
     }
@@ -64,12 +69,13 @@ fn not_drawn(pictures: &Pictures) -> Vec<String> {
     pictures.models.iter().chain(&pictures.measurements).flat_map(|drawn| drawn.not_drawn.clone()).collect()
 }
 
-fn write_figures(folder: &Path, pictures: &Pictures) -> Result<Vec<String>, miette::Report> {
+fn write_figures(folder: &Path, input: &Path, pictures: &Pictures) -> Result<Vec<String>, miette::Report> {
     std::fs::create_dir_all(folder).map_err(|error| miette!("{}: cannot be made: {error}", folder.display()))?;
     let mut written = Vec::new();
     for figure in pictures.figures() {
         for (extension, bytes) in forms(figure)? {
             let path = folder.join(format!("{}.{extension}", figure.name()));
+            refuse_overwriting(&path, [input.to_owned()])?;
             write_whole(&path, &bytes)?;
             written.push(path.display().to_string());
         }
@@ -94,10 +100,10 @@ fn print_result(arguments: &Arguments, result: &ReportResult) -> Result<(), miet
         return print_json("bbrf:report:1", result);
     }
     for path in result.page.iter().chain(&result.figures) {
-        print_text(path);
+        print_text(path)?;
     }
     for reason in &result.not_drawn {
-        eprintln!("not drawn: {reason}");
+        print_message(&format!("not drawn: {reason}"));
     }
     Ok(())
 }

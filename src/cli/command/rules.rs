@@ -3,7 +3,6 @@
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::validate::unknown_rule;
 use crate::cli::exit::{CommandResult, Outcome};
 use crate::cli::output::{print_json, print_text};
 use crate::validate::{RULES, Rule, Severity, rule};
@@ -57,13 +56,13 @@ pub(crate) fn run(arguments: &Arguments) -> CommandResult {
         print_json("bbrf:rules:1", &RulesResult { rules: RULES.iter().map(RuleText::from).collect() })?;
     } else {
         let line = |rule: &Rule| format!("{}  {:7}  {}", rule.alias, rule.severity.name(), rule.id);
-        print_text(&RULES.iter().map(line).collect::<Vec<_>>().join("\n"));
+        print_text(&RULES.iter().map(line).collect::<Vec<_>>().join("\n"))?;
     }
     Ok(Outcome::Done)
 }
 
 pub(crate) fn explain(arguments: &ExplainArguments) -> CommandResult {
-    let rule = rule(&arguments.rule).ok_or_else(|| unknown_rule(&arguments.rule))?;
+    let rule = rule(&arguments.rule).ok_or_else(|| miette!(help = "bbrf rules lists them", "{}", UnknownRule(arguments.rule.clone())))?;
     if arguments.json {
         print_json("bbrf:rules:1", &RulesResult { rules: vec![rule.into()] })?;
     } else {
@@ -75,7 +74,7 @@ pub(crate) fn explain(arguments: &ExplainArguments) -> CommandResult {
             rule.rationale,
             rule.example,
             rule.repair
-        ));
+        ))?;
     }
     Ok(Outcome::Done)
 }

@@ -39,7 +39,7 @@ pub(crate) fn run(arguments: &Arguments) -> CommandResult {
     let schemas = all();
     let names = || schemas.iter().map(|(name, _)| *name).collect::<Vec<_>>();
     let Some(wanted) = &arguments.name else {
-        print_text(&names().join("\n"));
+        print_text(&names().join("\n"))?;
         return Ok(Outcome::Done);
     };
     let (_, schema) = schemas
@@ -47,6 +47,6 @@ pub(crate) fn run(arguments: &Arguments) -> CommandResult {
         .find(|(name, _)| name == wanted)
         .ok_or_else(|| miette!("there is no schema `{wanted}`; expected one of: {}", names().join(", ")))?;
     let text = serde_json::to_string_pretty(schema).map_err(|error| miette!("{error}"))?;
-    print_text(&text);
+    print_text(&text)?;
     Ok(Outcome::Done)
 }

@@ -1,21 +1,18 @@
 //! `bbrf validate`: check files against the rules.
 
-use std::collections::HashMap;
+use std::collections::BTreeSet;
+use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use miette::miette;
-use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
 use schemars::JsonSchema;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::cli::exit::{CommandResult, Outcome};
-use crate::cli::output::{print_json, print_text};
+use crate::cli::output::{print_json, print_message, print_text};
 use crate::cli::progress::bar;
-use crate::dataset::Place;
-use crate::validate::{Finding, Report, Severity, Status, rule, validate_bytes};
-
-/// So many places of one finding are named in the text output.
-const MOST_PLACES: usize = 8;
+use crate::container::replace::write_whole;
+use crate::validate::{Checked, Grading, PROFILES, Status, UnknownRule, form, profile, repair, validate_files};
 
 /// Check files; exit status 0 valid, 1 not valid, 2 not readable, the worst of all.
 #[derive(Debug, clap::Args)]
@@ -29,15 +26,30 @@ pub(crate) struct Arguments {
     /// The same as --output json
     #[arg(long)]
     json: bool,
-    /// Treat findings of this rule as errors (`warnings`: all warnings)
+    /// What the file is for: exchange, archive (what is unstated is an error) or raw (it is a note)
+    #[arg(long, value_name = "NAME", default_value = PROFILES[0].name)]
+    profile: String,
+    /// Treat findings of this rule or group as errors (`warnings`: all warnings)
     #[arg(long, value_name = "RULE")]
     deny: Vec<String>,
-    /// Treat findings of this rule as warnings
+    /// Treat findings of this rule or group as warnings
     #[arg(long, value_name = "RULE")]
     warn: Vec<String>,
-    /// Leave out findings of this rule
+    /// Leave out findings of this rule or group
     #[arg(long, value_name = "RULE")]
     allow: Vec<String>,
+    /// Leave out findings that this file lists as known
+    #[arg(long, value_name = "FILE")]
+    baseline: Option<PathBuf>,
+    /// Write what is found to FILE, as known from now on
+    #[arg(long, value_name = "FILE", conflicts_with = "baseline")]
+    write_baseline: Option<PathBuf>,
+    /// Write files again where that alone mends a finding; content is never changed
+    #[arg(long)]
+    fix: bool,
+    /// With --fix: say what would be mended, and write nothing
+    #[arg(long, requires = "fix")]
+    dry_run: bool,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
@@ -46,48 +58,42 @@ enum Form {
     Text,
     /// For programs
     Json,
+    /// For code hosts: SARIF 2.1.0
+    Sarif,
+    /// For build servers: JUnit XML
+    Junit,
+    /// For comments and notebooks
+    Markdown,
 }
 
 /// What `--output json` prints.
 #[derive(Debug, Serialize, JsonSchema)]
 pub(crate) struct ValidateResult {
-    files: Vec<FileResult>,
+    files: Vec<Checked>,
 }
 
-/// One file.
-#[derive(Debug, Serialize, JsonSchema)]
-struct FileResult {
-    file: String,
-    status: Status,
-    #[serde(flatten)]
-    report: Report,
-}
-
-/// How the caller grades rules otherwise.
-struct Grading {
-    deny_warnings: bool,
-    deny: Vec<&'static str>,
-    warn: Vec<&'static str>,
-    allow: Vec<&'static str>,
+/// Findings that are known and accepted.
+#[derive(Debug, Serialize, Deserialize, JsonSchema)]
+pub(crate) struct Baseline {
+    /// Fingerprints of rule, file and place.
+    known: BTreeSet<String>,
 }
 
 pub(crate) fn run(arguments: &Arguments) -> CommandResult {
-    let grading = Grading::new(arguments)?;
-    let bar = bar(arguments.files.len() as u64, "files");
-    let checked = |path: &PathBuf| {
-        let result = validate(path, &grading);
-        bar.inc(1);
-        result
-    };
-    // Results come in the order of the files, whichever is done first.
-    let files: Vec<FileResult> = arguments.files.par_iter().map(checked).collect();
-    bar.finish_and_clear();
-    let worst = files.iter().map(|file| file.status).max().unwrap_or(Status::Valid);
-    if arguments.json || arguments.output == Form::Json {
-        print_json("bbrf:validate:1", &ValidateResult { files })?;
-    } else {
-        files.iter().for_each(|file| print_text(&file.text()));
+    let grading = grading(arguments)?;
+    if arguments.fix {
+        for file in &arguments.files {
+            print_message(&fix(file, arguments.dry_run)?);
+        }
     }
+    let bar = bar(arguments.files.len() as u64, "files");
+    let files = validate_files(&arguments.files, &grading, || bar.inc(1));
+    bar.finish_and_clear();
+    if let Some(path) = &arguments.write_baseline {
+        write_baseline(path, &files)?;
+    }
+    let worst = files.iter().map(|file| file.status).max().unwrap_or(Status::Valid);
+    print(files, if arguments.json { Form::Json } else { arguments.output })?;
     match worst {
         Status::Valid => Ok(Outcome::Done),
         Status::Invalid => Ok(Outcome::Failed),
@@ -95,123 +101,55 @@ pub(crate) fn run(arguments: &Arguments) -> CommandResult {
     }
 }
 
-fn validate(path: &Path, grading: &Grading) -> FileResult {
-    let file = path.display().to_string();
-    let mut report = match std::fs::read(path) {
-        Ok(bytes) => validate_bytes(&bytes),
-        Err(error) => not_read(&file, &error),
-    };
-    report.findings.retain_mut(|finding| grading.apply(finding));
-    for finding in &mut report.findings {
-        finding.place.file = Some(file.clone());
+fn print(files: Vec<Checked>, form: Form) -> Result<(), miette::Report> {
+    let failed = |error: form::FormError| miette!("{error}");
+    match form {
+        Form::Text => files.iter().try_for_each(|file| print_text(&form::text(file))),
+        Form::Json => print_json("bbrf:validate:1", &ValidateResult { files }),
+        Form::Sarif => print_text(&form::sarif(&files).map_err(failed)?),
+        Form::Junit => print_text(&form::junit(&files).map_err(failed)?),
+        Form::Markdown => print_text(&form::markdown(&files)),
     }
-    FileResult { file, status: report.status(), report }
 }
 
-/// The report on a file that the operating system does not give.
-fn not_read(file: &str, error: &std::io::Error) -> Report {
-    let finding = rule("structure.hdf5").map(|rule| Finding {
-        rule: rule.id,
-        alias: rule.alias,
-        severity: Severity::Error,
-        place: Place::file(file),
-        found: format!("cannot be read: {error}"),
-        expected: "a readable file".to_owned(),
-        advice: "Check the name and the permissions.".to_owned(),
-        z: None,
-    });
-    Report { digest: None, readable: false, findings: finding.into_iter().collect() }
+fn grading(arguments: &Arguments) -> Result<Grading, miette::Report> {
+    let names = || PROFILES.iter().map(|profile| profile.name).collect::<Vec<_>>().join(", ");
+    let profile = profile(&arguments.profile)
+        .ok_or_else(|| miette!("there is no profile `{}`; expected {}", arguments.profile, names()))?;
+    let mut grading = Grading::of(profile);
+    let unknown = |error: UnknownRule| miette!(help = "bbrf rules lists them", "{error}");
+    arguments.warn.iter().try_for_each(|name| grading.warn(name)).map_err(unknown)?;
+    arguments.deny.iter().try_for_each(|name| grading.deny(name)).map_err(unknown)?;
+    arguments.allow.iter().try_for_each(|name| grading.allow(name)).map_err(unknown)?;
+    if let Some(path) = &arguments.baseline {
+        let place = path.display();
+        let text = std::fs::read_to_string(path).map_err(|error| miette!("{place}: cannot be read: {error}"))?;
+        let baseline: Baseline = serde_json::from_str(&text)
+            .map_err(|error| miette!(help = "--write-baseline makes one", "{place}: no baseline: {error}"))?;
+        grading.know(baseline.known);
+    }
+    Ok(grading)
 }
 
-impl Grading {
-    fn new(arguments: &Arguments) -> Result<Self, miette::Report> {
-        let ids = |names: &[String]| -> Result<Vec<&'static str>, miette::Report> {
-            let known = names.iter().filter(|name| *name != "warnings");
-            known.map(|name| rule(name).map(|rule| rule.id).ok_or_else(|| unknown_rule(name))).collect()
-        };
-        Ok(Self {
-            deny_warnings: arguments.deny.iter().any(|name| name == "warnings"),
-            deny: ids(&arguments.deny)?,
-            warn: ids(&arguments.warn)?,
-            allow: ids(&arguments.allow)?,
-        })
-    }
+fn write_baseline(path: &Path, files: &[Checked]) -> Result<(), miette::Report> {
+    let findings = files.iter().flat_map(|file| &file.report.findings);
+    let baseline = Baseline { known: findings.map(crate::validate::Finding::fingerprint).collect() };
+    let text = serde_json::to_string_pretty(&baseline).map_err(|error| miette!("the baseline: {error}"))?;
+    write_whole(path, |file| writeln!(file, "{text}")).map_err(|error| miette!("{}: {error}", path.display()))
+}
 
-    /// Grades a finding; false where it is to be left out. What cannot be read stays an error.
-    fn apply(&self, finding: &mut Finding) -> bool {
-        let named = |rules: &[&str]| rules.contains(&finding.rule);
-        if self.deny_warnings && finding.severity == Severity::Warning || named(&self.deny) {
-            finding.severity = Severity::Error;
-        } else if named(&self.warn) {
-            finding.severity = Severity::Warning;
+/// Repairs a file in place, and says what was done.
+fn fix(path: &Path, dry_run: bool) -> Result<String, miette::Report> {
+    let name = path.display();
+    // What cannot be read is reported by the validation that follows.
+    let Ok(bytes) = std::fs::read(path) else { return Ok(format!("{name}: cannot be read, not repaired")) };
+    match repair(&bytes) {
+        Ok(None) => Ok(format!("{name}: nothing that writing it again would mend")),
+        Ok(Some(mended)) if dry_run => Ok(format!("{name}: would mend {}", mended.repaired.join(", "))),
+        Ok(Some(mended)) => {
+            write_whole(path, |file| file.write_all(&mended.bytes)).map_err(|error| miette!("{name}: {error}"))?;
+            Ok(format!("{name}: mended {}", mended.repaired.join(", ")))
         }
-        !named(&self.allow)
+        Err(error) => Ok(format!("{name}: {error}")),
     }
-}
-
-pub(super) fn unknown_rule(name: &str) -> miette::Report {
-    miette!(help = "bbrf rules lists them", "there is no rule `{name}`; expected an id or an alias such as BB0201")
-}
-
-impl FileResult {
-    fn text(&self) -> String {
-        let mut lines: Vec<String> = folded(&self.report.findings).into_iter().map(finding_text).collect();
-        let count = |severity| self.report.findings.iter().filter(|finding| finding.severity == severity).count();
-        let verdict = match self.status {
-            Status::Valid => "valid",
-            Status::Invalid => "NOT VALID",
-            Status::Unreadable => "NOT READABLE",
-        };
-        lines.push(format!(
-            "{}: {verdict} ({}, {}, {})",
-            self.file,
-            counted(count(Severity::Error), "error"),
-            counted(count(Severity::Warning), "warning"),
-            counted(count(Severity::Info), "note")
-        ));
-        lines.join("\n")
-    }
-}
-
-/// A number with its noun.
-pub(super) fn counted(count: usize, noun: &str) -> String {
-    format!("{count} {noun}{}", if count == 1 { "" } else { "s" })
-}
-
-/// Findings that say the same of several places, each once with its places, in the order of the first.
-fn folded(findings: &[Finding]) -> Vec<(&Finding, Vec<String>)> {
-    let mut known = HashMap::new();
-    let mut folded: Vec<(&Finding, Vec<String>)> = Vec::new();
-    for finding in findings {
-        let says = (finding.rule, finding.found.as_str(), finding.expected.as_str());
-        let index = *known.entry(says).or_insert(folded.len());
-        match folded.get_mut(index) {
-            // The name of the file stands with the first place and in the last line.
-            Some((_, places)) => places.push(Place { file: None, ..finding.place.clone() }.to_string()),
-            None => folded.push((finding, vec![finding.place.to_string()])),
-        }
-    }
-    folded
-}
-
-/// Places on one line; the JSON output has all of them.
-fn listed(places: &[String]) -> String {
-    match places {
-        [only] => only.clone(),
-        _ if places.len() <= MOST_PLACES => format!("{} places: {}", places.len(), places.join(", ")),
-        _ => format!("{} places: {}, ...", places.len(), places[..MOST_PLACES].join(", ")),
-    }
-}
-
-fn finding_text((finding, places): (&Finding, Vec<String>)) -> String {
-    format!(
-        "{} [{} {}] {}\n    found {}; expected {}\n    {}",
-        finding.severity.name(),
-        finding.alias,
-        finding.rule,
-        listed(&places),
-        finding.found,
-        finding.expected,
-        finding.advice
-    )
 }
