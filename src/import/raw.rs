@@ -151,8 +151,7 @@ fn measurement(
             let mask = entry.record.flags.get(column).copied().unwrap_or(Flags::NONE.with(Flag::NotMeasured));
             values[at] = entry.record.values.get(column).copied().unwrap_or(f64::NAN);
             flags[at] = mask.0;
-            let step = entry.record.steps.get(column).copied().unwrap_or(0.0);
-            sigma[at] = noise.map_or(f64::NAN, |noise| kept(noise.sigma(values[at], step, mask, column)));
+            sigma[at] = noise.map_or(f64::NAN, |noise| kept(noise.sigma(entry, column)));
         }
     }
     let components = noise.map(|_| record_scale(RECORD_SCALE)).into_iter().collect();

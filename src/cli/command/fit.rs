@@ -70,6 +70,9 @@ struct FittedModel {
     converged: bool,
     /// How a spectrum became the fitted number.
     reduction: String,
+    /// Wavelengths of the amplitudes, nm, in the order of their lists; none where one band was fitted.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    emission_nm: Option<Vec<f64>>,
     /// Reference convention of the fitted numbers.
     reference: String,
     /// The terms.
@@ -289,6 +292,7 @@ fn fitted_model(file: &Path, model: &Model, seconds: f64) -> FittedModel {
         measurement: model.measurement.to_string(),
         converged: model.converged,
         reduction: model.reduction.clone(),
+        emission_nm: model.emission.wavelengths().map(<[f64]>::to_vec),
         reference: model.reference.to_string(),
         terms,
         covariance: CovarianceResult {
