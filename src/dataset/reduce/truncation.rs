@@ -69,7 +69,10 @@ impl Truncation {
         if !self.empty.is_empty() {
             let list: Vec<String> = self.empty.iter().map(name).collect();
             let count = self.empty.len();
-            notes.push(format!("{count} of {of} emission values get no model, no row has a usable value there: {}", list.join(", ")));
+            notes.push(format!(
+                "{count} of {of} emission values get no model, no row has a usable value there: {}",
+                list.join(", ")
+            ));
         }
         notes
     }
@@ -83,9 +86,7 @@ fn floor_bias(measurement: &Measurement, rows: &[usize], column: usize) -> (usiz
         rows.iter().filter(below).map(|row| (*row, measurement.values[(*row, column)])).collect();
     let known = || bounds.iter().map(|(_, bound)| *bound).filter(|bound| bound.is_finite());
     let floor = (known().map(|bound| bound * bound).sum::<f64>() / known().count() as f64).sqrt();
-    let sigma = |row: usize| {
-        independent_sigma(measurement, row, column).filter(|sigma| *sigma > 0.0).unwrap_or(floor)
-    };
+    let sigma = |row: usize| independent_sigma(measurement, row, column).filter(|sigma| *sigma > 0.0).unwrap_or(floor);
     // A row that is below detection without a value has a bound all the same: one of the size of the noise.
     let in_sigmas = |(row, bound): &(usize, f64)| if bound.is_finite() { bound / sigma(*row) } else { 1.0 };
     let missing: f64 = bounds.iter().map(|bound| in_sigmas(bound).powi(2)).sum();
