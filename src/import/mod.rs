@@ -49,6 +49,7 @@ mod raw;
 mod receipt;
 mod record;
 mod reference;
+mod repeats;
 mod rows;
 mod scan;
 mod scan_order;
