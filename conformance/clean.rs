@@ -77,7 +77,12 @@ fn fitted_terms() -> Vec<FittedTerm> {
         shared_relative_uncertainty: Vec::new(),
     };
     vec![
-        FittedTerm { kind: TermKind::Lambertian, distribution: None, denominator: None, parameters: vec![parameter(0)] },
+        FittedTerm {
+            kind: TermKind::Lambertian,
+            distribution: None,
+            denominator: None,
+            parameters: vec![parameter(0)],
+        },
         FittedTerm {
             kind: TermKind::TorranceSparrow,
             distribution: Some(Distribution::GaussianHalfHeight),
@@ -176,7 +181,11 @@ fn calibration(subject: &str) -> Vec<Calibration> {
         date: Some("2026-01-10".to_owned()),
         expires: Some("2028-01-10".to_owned()),
         relative_standard_uncertainty: finite(0.002),
-        statement: Statement { coverage_factor: finite(2.0), coverage_probability: finite(0.95), ..Statement::default() },
+        statement: Statement {
+            coverage_factor: finite(2.0),
+            coverage_probability: finite(0.95),
+            ..Statement::default()
+        },
     }]
 }
 
@@ -310,8 +319,17 @@ fn model(document: &Document) -> Model {
     let reduction = Reduction::Band(Band { from_nm: 495.0, to_nm: 545.0 });
     let data = reduce(document, scan, reduction).expect("a scan that can be reduced");
     let variance = |k: usize| (TRUTH[k] / 1000.0).powi(2);
-    let covariance = Array2::from_shape_fn((4, 4), |(i, j)| if i == j { variance(i) } else { 0.1 * (variance(i) * variance(j)).sqrt() });
-    let names = ["lambertian.albedo", "torrance-sparrow.intensity", "torrance-sparrow.roughness", "torrance-sparrow.refractive_index"];
+    let covariance =
+        Array2::from_shape_fn(
+            (4, 4),
+            |(i, j)| if i == j { variance(i) } else { 0.1 * (variance(i) * variance(j)).sqrt() },
+        );
+    let names = [
+        "lambertian.albedo",
+        "torrance-sparrow.intensity",
+        "torrance-sparrow.roughness",
+        "torrance-sparrow.refractive_index",
+    ];
     let mut model = Model {
         id: id("fit"),
         title: None,

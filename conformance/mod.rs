@@ -1,6 +1,14 @@
 //! The conformance kit: a clean document, faults made in it one at a time, and what must be found in each. Any reader or
 //! validator can be scored with the files; see `examples/conformance_kit.rs`.
-#![allow(dead_code, unused_imports, unreachable_pub, clippy::expect_used, clippy::unwrap_used, clippy::panic, reason = "a program for tests")]
+#![allow(
+    dead_code,
+    unused_imports,
+    unreachable_pub,
+    clippy::expect_used,
+    clippy::unwrap_used,
+    clippy::panic,
+    reason = "a program for tests"
+)]
 
 mod clean;
 mod faults;
@@ -96,7 +104,8 @@ pub fn numbers<'a>(group: &'a mut Group, name: &str) -> &'a mut Vec<f64> {
 
 /// What is found in a file by our own validator.
 pub fn found(bytes: &[u8]) -> Vec<&'static str> {
-    let mut rules: Vec<&str> = bbrf::validate::validate_bytes(bytes).findings.iter().map(|finding| finding.rule).collect();
+    let mut rules: Vec<&str> =
+        bbrf::validate::validate_bytes(bytes).findings.iter().map(|finding| finding.rule).collect();
     rules.dedup();
     rules.into_iter().map(|rule| rule.rsplit(':').next().unwrap_or(rule)).collect()
 }

@@ -86,7 +86,10 @@ fn score(folder: &Path, command: &[&str]) -> Result<(), Box<dyn Error>> {
         }
         counts[severity as usize][column] += 1;
     }
-    println!("{:<10} {:>8} {:>12} {:>8} {:>8} {:>8}", "fault of", "by rule", "other reason", "passed", "crashed", "hung");
+    println!(
+        "{:<10} {:>8} {:>12} {:>8} {:>8} {:>8}",
+        "fault of", "by rule", "other reason", "passed", "crashed", "hung"
+    );
     for severity in [Severity::Error, Severity::Warning, Severity::Info] {
         let [named, refused, passed, crashed, hung] = counts[severity as usize];
         println!("{:<10} {named:>8} {refused:>12} {passed:>8} {crashed:>8} {hung:>8}", severity.name());

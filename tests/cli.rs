@@ -73,8 +73,14 @@ fn every_wavelength_is_fitted_with_one_roughness_and_index() {
     let folder = tempfile::tempdir().unwrap();
     let file = fitted(folder.path());
     let result = json(bbrf().args(["fit", "--json", "--reduce", "none"]).arg(&file), "fit");
-    let parameters = &result["models"][0]["terms"][1]["parameters"];
-    assert_eq!(parameters["intensity"]["value"].as_array().unwrap().len(), 101);
+    let model = &result["models"][0];
+    let parameters = &model["terms"][1]["parameters"];
+    let nm = model["emission_nm"].as_array().unwrap();
+    assert_eq!(parameters["intensity"]["value"].as_array().unwrap().len(), nm.len());
+    // Those that are not among them are the ones that the floor truncates, and they are said.
+    assert!((87..101).contains(&nm.len()) && !nm.contains(&400.0.into()), "{nm:?}");
+    let said = format!("{} of 101 emission values get no model", 101 - nm.len());
+    assert!(model["identifiability"].to_string().contains(&said), "{}", model["identifiability"]);
     let roughness = parameters["roughness"]["value"].as_f64().unwrap();
     assert!((roughness - 0.1).abs() < 0.001, "{roughness}");
     let luminance = json(bbrf().args(["fit", "--json", "--reduce", "luminance"]).arg(&file), "fit");

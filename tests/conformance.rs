@@ -48,7 +48,12 @@ fn each_rule_has_a_fault_a_clause_and_one_name() {
     }
     for fault in FAULTS {
         assert!(rule(fault.rule).is_some(), "no rule {}", fault.rule);
-        assert_eq!(FAULTS.iter().filter(|other| other.file_name() == fault.file_name()).count(), 1, "{}", fault.file_name());
+        assert_eq!(
+            FAULTS.iter().filter(|other| other.file_name() == fault.file_name()).count(),
+            1,
+            "{}",
+            fault.file_name()
+        );
     }
     assert!(FAULTS.len() >= 150, "{} faults", FAULTS.len());
     assert!(RULES.iter().any(|rule| rule.severity == Severity::Info));

@@ -122,7 +122,11 @@ fn what_all_values_share_is_kept_apart() {
     let (values, sigma) = measure(&paper_sphere(), &grid, 0.01, &mut Random::new(1));
     let mut document = document(&grid, values, Some(sigma), FIXED);
     let alone = fit(&document, &FitOptions::default()).unwrap();
-    document.measurements[0].uncertainty.components.push(Component::new("certificate", vec![0.02], CorrelatedOver::All));
+    document.measurements[0].uncertainty.components.push(Component::new(
+        "certificate",
+        vec![0.02],
+        CorrelatedOver::All,
+    ));
     let shared = fit(&document, &FitOptions::default()).unwrap();
     assert_eq!(alone.covariance, shared.covariance);
     assert_eq!(shared.terms[0].parameters[0].shared_relative_uncertainty, [0.02]);

@@ -10,7 +10,7 @@ use ndarray::{Array2, array};
 
 fn measurement(id: &str, kind: QuantityKind, role: Role, nm: &[f64], values: Array2<f64>) -> Measurement {
     let rows = values.nrows() as u32;
-    let geometry = |k: u32| Geometry::from_signed(10.0 * f64::from(k), 20.0, SignHabit::MirrorAtEqual).unwrap();
+    let geometry = |k: u32| Geometry::from_signed(10.0 * f64::from(k % 9), 20.0, SignHabit::MirrorAtEqual).unwrap();
     let emission = EmissionAxis::Wavelengths(WavelengthAxis::new(nm.to_vec(), Bandpass::Unstated).unwrap());
     let acquisitions = (0..rows).map(|k| Acquisition::at(Some(geometry(k)), k)).collect();
     Measurement::new(Id::new(id).unwrap(), role, Quantity::absolute(kind, Part::Total), emission, acquisitions, values)
@@ -137,4 +137,49 @@ fn reductions_are_spelled_as_on_the_command_line() {
         let error = wrong.parse::<Reduction>().unwrap_err();
         assert!(error.to_string().contains("luminance"), "{error}");
     }
+}
+
+#[test]
+fn a_wavelength_that_the_floor_truncates_is_left_out_and_said() {
+    // A signal in units of its noise in forty rows, and how many of them are on the floor.
+    let scan = |signal: f64, below: usize| {
+        let mut measurement = measurement(
+            "m",
+            QuantityKind::SpectralRadiance,
+            Role::Sample,
+            &[400.0, 500.0],
+            Array2::from_shape_fn((40, 2), |(_, column)| if column == 0 { signal } else { 100.0 }),
+        );
+        measurement.uncertainty.standard = Some(Array2::ones((40, 2)));
+        for row in 0..below {
+            measurement.values[(row, 0)] = 1.0;
+            measurement.flags[(row, 0)] = Flag::BelowDetection.bit();
+        }
+        Document { measurements: vec![measurement], ..Document::default() }
+    };
+    let columns = |document: &Document| {
+        let reduced = reduce(document, &document.measurements[0], Reduction::None).unwrap();
+        (reduced.emission.wavelengths().unwrap().to_vec(), reduced.left_out_emission, reduced.notes)
+    };
+    let (nm, left_out, notes) = columns(&scan(1.5, 3));
+    assert_eq!((nm, left_out), (vec![500.0], 1));
+    assert!(
+        notes[0].starts_with("1 of 2 emission values get no model") && notes[0].contains("400 nm (3)"),
+        "{notes:?}"
+    );
+    assert_eq!(columns(&scan(15.0, 3)).0, [400.0, 500.0], "far above the floor little is missing");
+    assert_eq!(columns(&scan(1.5, 0)).2, Vec::<String>::new());
+    let mut dark = scan(1.5, 3);
+    dark.measurements[0].flags.fill(Flag::BelowDetection.bit());
+    let error = reduce(&dark, &dark.measurements[0], Reduction::None).unwrap_err();
+    assert!(matches!(error, ReduceError::Truncated { .. }) && error.to_string().contains("500 nm (40)"), "{error}");
+}
+
+#[test]
+fn what_cannot_be_reduced_reads_as_a_sentence() {
+    let mut document = scan();
+    document.measurements[2].acquisitions.iter_mut().for_each(|row| row.geometry = None);
+    let error = reduce(&document, document.measurement("scan").unwrap(), Reduction::None).unwrap_err();
+    let text = error.to_string();
+    assert!(text.ends_with("none of its 2 rows has a known geometry and a usable value at any wavelength"), "{text}");
 }

@@ -104,7 +104,10 @@ fn filters(header: &ObjectHeader) -> Vec<u16> {
         HdfMessage::FilterPipeline(pipeline) => Some(pipeline),
         _ => None,
     });
-    pipelines.flat_map(|pipeline| pipeline.filters.iter().map(|filter| filter.id)).filter(|id| !USUAL_FILTERS.contains(id)).collect()
+    pipelines
+        .flat_map(|pipeline| pipeline.filters.iter().map(|filter| filter.id))
+        .filter(|id| !USUAL_FILTERS.contains(id))
+        .collect()
 }
 
 /// The constructs of a dataset.
@@ -115,7 +118,9 @@ pub(super) fn of_dataset(dataset: &hdf5_reader::Dataset, header: &ObjectHeader, 
     let (mut ordered, mut has_attributes) = (false, false);
     for message in &header.messages {
         match message {
-            HdfMessage::Dataspace(space) if space.dataspace_type == DataspaceType::Null => add(Construct::NullDataspace),
+            HdfMessage::Dataspace(space) if space.dataspace_type == DataspaceType::Null => {
+                add(Construct::NullDataspace)
+            }
             HdfMessage::AttributeInfo(info) => ordered = info.creation_order_tracked,
             HdfMessage::Attribute(_) => has_attributes = true,
             _ => {}

@@ -44,7 +44,8 @@ fn put_fields(group: &mut Group, fields: Map<String, Value>) -> Result<(), Encod
             continue;
         }
         if let Value::Array(items) = value {
-            let descriptions = items.into_iter().filter_map(|item| if let Value::Object(item) = item { Some(item) } else { None });
+            let descriptions =
+                items.into_iter().filter_map(|item| if let Value::Object(item) = item { Some(item) } else { None });
             for (position, item) in descriptions.enumerate() {
                 let mut child = Group::default();
                 put_fields(&mut child, item)?;
@@ -82,7 +83,10 @@ pub(super) fn decode_fields<T: DeserializeOwned + JsonSchema>(
 }
 
 /// Reads a description from the attributes of a dataset.
-pub(super) fn decode_attributes<T: DeserializeOwned + JsonSchema>(attributes: &Attributes, path: &str) -> Result<T, ReadError> {
+pub(super) fn decode_attributes<T: DeserializeOwned + JsonSchema>(
+    attributes: &Attributes,
+    path: &str,
+) -> Result<T, ReadError> {
     let mut fields = Map::new();
     for property in properties(&schemars::schema_for!(T).to_value()) {
         read_attribute(&mut fields, attributes, path, &property)?;
@@ -163,8 +167,14 @@ fn list(path: &str, properties: &[Property], rows: &mut Vec<Entry>) {
 
 /// The unit stands at the end of the name of every field that has one.
 fn unit(property: &Property) -> &'static str {
-    const UNITS: [(&str, &str); 6] =
-        [("_mm", "mm"), ("_nm", "nm"), ("_deg", "degree"), ("_sr", "sr"), ("_celsius", "degC"), ("_percent", "percent")];
+    const UNITS: [(&str, &str); 6] = [
+        ("_mm", "mm"),
+        ("_nm", "nm"),
+        ("_deg", "degree"),
+        ("_sr", "sr"),
+        ("_celsius", "degC"),
+        ("_percent", "percent"),
+    ];
     if property.kind == "string" {
         return "";
     }
@@ -188,7 +198,11 @@ fn properties(schema: &Value) -> Vec<Property> {
 
 fn fields_of(schema: &Value, root: &Value) -> Vec<Property> {
     let Some(fields) = schema.get("properties").and_then(Value::as_object) else { return Vec::new() };
-    fields.iter().filter(|(name, _)| !NAMES.contains(&name.as_str())).filter_map(|(name, field)| field_of(name, field, root)).collect()
+    fields
+        .iter()
+        .filter(|(name, _)| !NAMES.contains(&name.as_str()))
+        .filter_map(|(name, field)| field_of(name, field, root))
+        .collect()
 }
 
 /// `None` for what is not a description: lists of numbers, other parts of the document.

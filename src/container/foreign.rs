@@ -84,7 +84,8 @@ impl Foreign {
             let (parent, name) = object.rsplit_once('/').unwrap_or(("", object));
             match content {
                 Content::Attribute(array) => {
-                    let found = if object == "/" { Some(&mut tree.attributes) } else { attributes_at(tree, parent, name) };
+                    let found =
+                        if object == "/" { Some(&mut tree.attributes) } else { attributes_at(tree, parent, name) };
                     if let Some(attributes) = found {
                         attributes.entry(attribute.to_owned()).or_insert_with(|| array.clone());
                     }
@@ -114,7 +115,8 @@ fn attributes_at<'a>(tree: &'a mut Group, parent: &str, name: &str) -> Option<&'
 }
 
 fn carried_attributes(attributes: &Attributes) -> Attributes {
-    let carried = attributes.iter().filter(|(name, array)| !is_outside_digest(name) && !matches!(array.data, Data::Other(_)));
+    let carried =
+        attributes.iter().filter(|(name, array)| !is_outside_digest(name) && !matches!(array.data, Data::Other(_)));
     carried.map(|(name, array)| (name.clone(), array.clone())).collect()
 }
 

@@ -159,7 +159,18 @@ pub(super) const TABLE: &[Entry] = &[
 pub(super) fn order(path: &str) -> (usize, String, bool) {
     let object = path.split('@').next().unwrap_or(path);
     let top = object.split('/').nth(1).unwrap_or_default();
-    let rooms = ["", "sample", "instrument", "light", "white_reference", "measurement", "model", "**", "provenance", "extension"];
+    let rooms = [
+        "",
+        "sample",
+        "instrument",
+        "light",
+        "white_reference",
+        "measurement",
+        "model",
+        "**",
+        "provenance",
+        "extension",
+    ];
     let room = rooms.iter().position(|room| *room == top).unwrap_or(rooms.len());
     (room, object.to_owned(), !path.contains('@'))
 }

@@ -35,7 +35,9 @@ pub use limits::Limits;
 pub use open::{Inspection, Mismatch, Opened, inspect, open_to_rewrite, open_verified, read_bytes, read_file};
 
 #[cfg(feature = "write")]
-pub use save::{document_bytes, document_tree, rewrite, rewritten_bytes, sign_tree, tree_bytes, write_file, write_file_keeping};
+pub use save::{
+    document_bytes, document_tree, rewrite, rewritten_bytes, sign_tree, tree_bytes, write_file, write_file_keeping,
+};
 
 #[cfg(feature = "write")]
 mod save;

@@ -48,7 +48,8 @@ pub fn read_file(path: &Path) -> Result<Opened, ReadError> {
 /// # Errors
 /// As [`read_file`].
 pub fn read_bytes(bytes: &[u8], limits: &Limits) -> Result<Opened, ReadError> {
-    let Inspection { document, stored_digest, computed_digest, foreign, unknown, mismatches, .. } = inspect(bytes, limits)?;
+    let Inspection { document, stored_digest, computed_digest, foreign, unknown, mismatches, .. } =
+        inspect(bytes, limits)?;
     let document = document?;
     document.check().map_err(|source| ReadError::Document { place: Box::default(), source })?;
     let computed_digest =
@@ -92,7 +93,16 @@ pub fn inspect(bytes: &[u8], limits: &Limits) -> Result<Inspection, ReadError> {
         (Some(canonical), Some(digest)) => mismatches(&tree, canonical, digest, stored_digest.as_deref()),
         _ => Vec::new(),
     };
-    Ok(Inspection { unusual, unknown: unknown(&tree), foreign: Foreign::of(&tree), tree, document, stored_digest, computed_digest, mismatches })
+    Ok(Inspection {
+        unusual,
+        unknown: unknown(&tree),
+        foreign: Foreign::of(&tree),
+        tree,
+        document,
+        stored_digest,
+        computed_digest,
+        mismatches,
+    })
 }
 
 /// Something in a file that is not as its document would be written.

@@ -95,7 +95,8 @@ impl Walk<'_> {
         self.count(1, path)?;
         let attributes = self.attributes(&dataset.attributes(), path)?;
         let shape = lengths(dataset.shape(), path)?;
-        let header = self.file.get_or_parse_header(dataset.address()).map_err(|error| ReadError::encoding(path, error))?;
+        let header =
+            self.file.get_or_parse_header(dataset.address()).map_err(|error| ReadError::encoding(path, error))?;
         encoding::of_dataset(dataset, &header, path, &mut self.unusual);
         let data = match encoding::unreadable(&header) {
             Some(why) => Data::Other(why),

@@ -4,7 +4,9 @@ use ndarray::Array2;
 use serde::{Deserialize, Serialize};
 
 use super::{Conditions, DirectionTest, Id};
-use crate::quantity::{BandpassCorrection, BandpassShape, EmissionAxis, Flags, Geometry, Quantity, Uncertainty, named, rows_plain};
+use crate::quantity::{
+    BandpassCorrection, BandpassShape, EmissionAxis, Flags, Geometry, Quantity, Uncertainty, named, rows_plain,
+};
 
 named! {
     /// What the instrument looked at.

@@ -4,6 +4,7 @@
 //! perfect diffuser would radiate (the reference's radiance over its certified factor), that ratio is the mean of the
 //! factor weighted with p; p comes from the reference's rows in the same document.
 
+mod truncation;
 mod weighted_sum;
 
 use std::fmt;
@@ -13,6 +14,7 @@ use ndarray::Array2;
 
 use super::{Document, Measurement};
 use crate::quantity::{Band, CorrelatedOver, EmissionAxis, Geometry, QuantityKind, Reference};
+use truncation::Truncation;
 use weighted_sum::WeightedSum;
 
 /// What is asked for.
@@ -81,7 +83,8 @@ pub enum ReduceError {
     },
     /// No row has a known geometry and a usable value.
     #[error(
-        "measurement `{measurement}`: none of its {rows} rows has a known geometry and a usable value in {reduction}"
+        "measurement `{measurement}`: none of its {rows} rows has a known geometry and a usable value {}",
+        within(.reduction)
     )]
     NothingLeft {
         /// Which measurement.
@@ -92,7 +95,9 @@ pub enum ReduceError {
         reduction: String,
     },
     /// The band holds no wavelength.
-    #[error("measurement `{measurement}`: no usable wavelength in {reduction}; its axis runs from {from} to {to} nm")]
+    #[error(
+        "measurement `{measurement}`: no usable value {}; its axis runs from {from} to {to} nm", within(.reduction)
+    )]
     EmptyBand {
         /// Which measurement.
         measurement: String,
@@ -102,6 +107,14 @@ pub enum ReduceError {
         from: f64,
         /// Last wavelength, nm.
         to: f64,
+    },
+    /// Every usable emission value is truncated by the instrument's floor.
+    #[error("measurement `{measurement}`: {why}; reduce it to a band with more light, or measure longer")]
+    Truncated {
+        /// Which measurement.
+        measurement: String,
+        /// Where and how much.
+        why: String,
     },
     /// A band was asked of a measurement that is already a band.
     #[error(
@@ -113,6 +126,15 @@ pub enum ReduceError {
         /// What was asked for.
         reduction: String,
     },
+}
+
+/// Where a reduction looks, in a sentence.
+fn within(reduction: &str) -> String {
+    match reduction {
+        "none" | "auto" => "at any wavelength".to_owned(),
+        "luminance" => "where V(lambda) is above zero".to_owned(),
+        band => format!("in {band}"),
+    }
 }
 
 /// The numbers that are fitted: columns x rows, one column per emission value that is left.
@@ -140,6 +162,8 @@ pub struct Reduced {
     pub shared_relative: Vec<f64>,
     /// Rows of the measurement that are not used.
     pub left_out: usize,
+    /// Emission values of the measurement that are not used.
+    pub left_out_emission: usize,
 }
 
 /// Reduces a measurement of a document.
@@ -199,32 +223,39 @@ fn shared(measurement: &Measurement, column: usize, select: impl Fn(CorrelatedOv
     components.map(|component| component.relative_at(column).powi(2)).sum::<f64>().sqrt()
 }
 
-/// Every emission value by itself.
+/// Every emission value by itself, but those that the floor truncates.
 fn keep_columns(measurement: &Measurement, reduction: String) -> Result<Reduced, ReduceError> {
-    let (count, columns) = measurement.shape();
-    let rows: Vec<usize> = (0..count)
-        .filter(|&row| geometry_of(measurement, row).is_some())
-        .filter(|&row| (0..columns).any(|column| usable(measurement, row, column).is_finite()))
-        .collect();
+    let count = measurement.acquisitions.len();
+    let placed: Vec<usize> = (0..count).filter(|&row| geometry_of(measurement, row).is_some()).collect();
+    let truncation = Truncation::of(measurement, &placed);
+    let columns = &truncation.fair;
+    let has_value = |row: &usize| columns.iter().any(|&column| usable(measurement, *row, column).is_finite());
+    let rows: Vec<usize> = placed.iter().copied().filter(has_value).collect();
+    let notes = truncation.notes(measurement, placed.len());
+    if columns.is_empty() && !truncation.truncated.is_empty() {
+        return Err(ReduceError::Truncated { measurement: measurement.id.to_string(), why: notes.join("; ") });
+    }
     if rows.is_empty() {
         return Err(nothing_left(measurement, &reduction));
     }
+    let shape = (columns.len(), rows.len());
     let over_rows = |over| over != CorrelatedOver::Wavelengths;
     Ok(Reduced {
         kind: measurement.quantity.kind,
         reference: measurement.quantity.reference,
         reduction,
-        notes: Vec::new(),
-        emission: measurement.emission.clone(),
+        notes,
+        emission: measurement.emission.selection(columns),
         geometry: rows.iter().filter_map(|&row| geometry_of(measurement, row)).collect(),
-        values: Array2::from_shape_fn((columns, rows.len()), |(c, k)| usable(measurement, rows[k], c)),
+        values: Array2::from_shape_fn(shape, |(c, k)| usable(measurement, rows[k], columns[c])),
         sigma: measurement.uncertainty.standard.as_ref().map(|_| {
-            Array2::from_shape_fn((columns, rows.len()), |(c, k)| {
-                independent_sigma(measurement, rows[k], c).unwrap_or(f64::NAN)
+            Array2::from_shape_fn(shape, |(c, k)| {
+                independent_sigma(measurement, rows[k], columns[c]).unwrap_or(f64::NAN)
             })
         }),
-        shared_relative: (0..columns).map(|column| shared(measurement, column, over_rows)).collect(),
+        shared_relative: columns.iter().map(|&column| shared(measurement, column, over_rows)).collect(),
         left_out: count - rows.len(),
+        left_out_emission: truncation.left_out(),
         rows,
     })
 }

@@ -123,6 +123,8 @@ pub fn residuals(model: &Model, data: &Reduced, parameters: usize) -> Result<(Ar
         .map(|(index, value)| (index, *value))
         .collect();
     let count = used.len();
+    let (columns, rows) = data.values.dim();
+    let all = (columns + data.left_out_emission) * (rows + data.left_out);
     let sum: f64 = used.iter().map(|(_, value)| value * value).sum();
     let freedom = count.saturating_sub(parameters) as f64;
     let chi_square: f64 = data
@@ -133,7 +135,7 @@ pub fn residuals(model: &Model, data: &Reduced, parameters: usize) -> Result<(Ar
         rms: (sum / count as f64).sqrt(),
         reduced_chi_square: chi_square / freedom,
         count: count as u64,
-        left_out: (residual.len() - count + data.left_out * data.values.nrows()) as u64,
+        left_out: (all - count) as u64,
     };
     Ok((residual, summary))
 }

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::fmt;
 use std::str::FromStr;
 
-use super::error::{ImportError, fault};
+use super::error::{ImportError, fault, fault_of};
 use crate::dataset::Place;
 use crate::quantity::{DirectionError, Geometry, SignHabit, UnknownName};
 
@@ -85,14 +85,7 @@ impl Written {
                 )));
             }
         };
-        result.map_err(|error| {
-            ImportError::Malformed(fault(
-                place.clone(),
-                error.to_string(),
-                "angles of a measurement in degrees",
-                "correct the angle",
-            ))
-        })
+        result.map_err(|error| ImportError::Malformed(fault_of(place.clone(), &error, "correct the angle")))
     }
 }
 

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use super::error::{ImportError, fault, quoted};
+use super::manifest::beside;
 use super::number::value;
 use super::plan::Plan;
 use super::receipt::Notes;
@@ -61,7 +62,7 @@ pub(super) fn read(plan: &Plan, sample: &Measurement, notes: &mut Notes) -> Resu
     let axis = sample.emission.wavelengths().unwrap_or(&[]);
     let factor = axis.iter().map(|nm| interpolate(&record, *nm)).collect::<Option<Vec<f64>>>().ok_or_else(|| {
         ImportError::Contradiction(fault(
-            Place::file(text.as_str()),
+            Place::file(record.file.as_str()),
             "a certificate that does not cover the emission axis",
             format!(
                 "wavelengths from {} to {} nm",
@@ -91,12 +92,15 @@ fn refused(place: &Place, text: &str) -> ImportError {
 
 /// A file's name is relative to the manifest, or to where the command runs.
 fn read_file(plan: &Plan, name: &str, notes: &mut Notes) -> Result<Record, ImportError> {
-    let beside = plan.place.file.as_deref().map(Path::new).and_then(Path::parent).map(|folder| folder.join(name));
-    let path = beside.filter(|path| path.is_file()).unwrap_or_else(|| Path::new(name).to_path_buf());
+    let folder = plan.place.file.as_deref().map(Path::new).and_then(Path::parent);
+    let path = folder
+        .map(|folder| beside(folder, name))
+        .filter(|path| path.is_file())
+        .unwrap_or_else(|| Path::new(name).to_path_buf());
     if !path.is_file() {
         return Err(refused(&plan.place, name));
     }
-    let source = Source::read(&path, name)?;
+    let source = Source::read(&path, &path.display().to_string())?;
     let options = Options { allow_partial_grid: true, ..Options::default() };
     let record = columns::parse(&source, &options)?.records.into_iter().next();
     let record = record.filter(|record| record.values.iter().all(|value| *value > 0.0));
@@ -104,7 +108,14 @@ fn read_file(plan: &Plan, name: &str, notes: &mut Notes) -> Result<Record, Impor
     input.dialect = "certificate, columns".to_owned();
     input.records = 1;
     notes.input(input);
-    record.ok_or_else(|| refused(&plan.place, name))
+    record.ok_or_else(|| {
+        ImportError::Malformed(fault(
+            source.at_line(1),
+            "no certified factor",
+            "two columns: nm and a factor greater than zero",
+            "correct the certificate",
+        ))
+    })
 }
 
 fn interpolate(record: &Record, nm: f64) -> Option<f64> {

@@ -196,6 +196,7 @@ impl Reader<'_> {
         record.fixed_decimals = rows.iter().all(fixed).then_some(decimals);
         if record.is_pr650_like() {
             flag_printed_zeros(&mut record);
+            doubt_negatives(&mut record);
         }
         self.records.push(record);
     }
@@ -256,4 +257,18 @@ fn flag_printed_zeros(record: &mut Record) {
             *flags = flags.with(Flag::BelowDetection);
         }
     }
+}
+
+/// Nor does it print a negative value: something was taken off, or another instrument measured on this grid.
+fn doubt_negatives(record: &mut Record) {
+    let negative = || record.nm.iter().zip(&record.values).filter(|(_, value)| **value < 0.0);
+    let Some((nm, value)) = negative().next() else { return };
+    let text = format!(
+        "{}{} of {} values are negative (the first {value:e} at {nm} nm), which a PR-650 cannot print: something was \
+         taken off them, or another instrument measured; the values are kept",
+        record.prefix(),
+        negative().count(),
+        record.values.len()
+    );
+    record.doubts.push(text);
 }

@@ -87,6 +87,13 @@ pub(crate) fn fault(
     Box::new(Fault { place, found: found.into(), expected: expected.into(), advice: advice.into() })
 }
 
+/// The fault of an error of another room, whose text is `FOUND; expected EXPECTED`.
+pub(crate) fn fault_of(place: Place, error: &impl fmt::Display, advice: &str) -> Box<Fault> {
+    let text = error.to_string();
+    let (found, expected) = text.split_once("; expected ").unwrap_or((&text, "another value"));
+    fault(place, found, expected, advice)
+}
+
 /// A short form of a text from a file: what a message can hold, on one line.
 pub(crate) fn quoted(text: &str) -> String {
     let short: String = text.chars().take(60).flat_map(char::escape_debug).collect();

@@ -12,6 +12,7 @@ use super::plan::{Plan, geometry_key};
 use super::raw::record_scale;
 use super::receipt::{Notes, listed};
 use super::reference::{self, Groups};
+use super::repeats::acquisitions;
 use crate::dataset::{Acquisition, Conditions, Derivation, Id, Measurement, Role, WhiteReference};
 use crate::quantity::{
     Basis, Component, CorrelatedOver, Flag, Flags, NormalisedAt, Quantity, QuantityKind, Uncertainty,
@@ -165,10 +166,14 @@ impl<'a> Division<'a> {
             white_reference: Some(certificate.reference.id.clone()),
             emission: sample.emission.clone(),
             excitations: sample.excitations.clone(),
-            acquisitions: self.acquisitions(groups),
+            acquisitions: acquisitions(self.sample, &groups.sample, &self.rows),
             values,
             flags,
-            uncertainty: Uncertainty { standard: self.spread.known().then_some(sigma), components, ..Uncertainty::default() },
+            uncertainty: Uncertainty {
+                standard: self.spread.known().then_some(sigma),
+                components,
+                ..Uncertainty::default()
+            },
             conditions: Conditions::default(),
             direction_tests: Vec::new(),
             derivation: Some(self.derivation(groups)),
@@ -231,7 +236,11 @@ impl<'a> Division<'a> {
             components.push(record_scale(if own { sample_scale.hypot(white_scale) } else { sample_scale }));
         }
         if self.spread.known() && !own {
-            components.push(Component::new("white reference", relative.columns().into_iter().map(|column| root_mean_square(column.iter())).collect(), CorrelatedOver::Acquisitions));
+            components.push(Component::new(
+                "white reference",
+                relative.columns().into_iter().map(|column| root_mean_square(column.iter())).collect(),
+                CorrelatedOver::Acquisitions,
+            ));
             components.push(Component::new("white reference scale", vec![white_scale], CorrelatedOver::All));
         }
         if let Some(uncertainty) = certificate.reference.certified_relative_uncertainty {
@@ -250,25 +259,6 @@ impl<'a> Division<'a> {
             reference_light: groups.reference_light.clone(),
             certified_factor: certificate.factor.clone(),
         }
-    }
-
-    fn acquisitions(&self, groups: &Groups) -> Vec<Acquisition> {
-        let rows = groups.sample.iter().zip(&self.rows);
-        rows.filter_map(|(rows, mean)| {
-            let raw: Vec<&Acquisition> = rows.iter().map(|row| &self.sample.acquisitions[*row]).collect();
-            let first = *raw.first()?;
-            let same_exposure = raw.iter().all(|other| other.exposure_ms == first.exposure_ms);
-            Some(Acquisition {
-                geometry: first.geometry,
-                excitation: first.excitation,
-                order: first.order,
-                repeats: u32::try_from(mean.count).unwrap_or(u32::MAX).max(1),
-                time: first.time.clone(),
-                exposure_ms: first.exposure_ms.filter(|_| same_exposure),
-                quality_code: first.quality_code.filter(|_| raw.len() == 1),
-            })
-        })
-        .collect()
     }
 
     fn derivation(&self, groups: &Groups) -> Derivation {

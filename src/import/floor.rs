@@ -3,7 +3,7 @@
 //! The PR-650 never reports zero. In the dark it prints a floor that depends on the wavelength and on the exposure and
 //! repeats digit by digit from record to record: an upper bound and not a value. The floor is not documented, so it is
 //! found in the data, by [`Floor`]. Samples within one per cent of the floor of their record are flagged; nothing is
-//! changed.
+//! changed. The noise of the dark is as large as the floor, which is therefore kept with each record.
 
 use super::floor_scale::{Exposed, Floor};
 use super::plan::Entry;
@@ -24,7 +24,7 @@ pub(super) struct Found {
     pub(super) records: usize,
 }
 
-/// Flags the samples on the floor as below detection. All entries with data share one axis.
+/// Flags the samples on the floor as below detection, and gives each record its floor. All entries with data share one axis.
 pub(super) fn flag_floor(entries: &mut [Entry]) -> Found {
     // A lamp has an axis and a range of its own; fixed decimals show zeros and no floor.
     let usable = |entry: &&Entry| {
@@ -34,6 +34,7 @@ pub(super) fn flag_floor(entries: &mut [Entry]) -> Found {
     let floor = Floor::of(&spectra);
     let mut found = Found { wavelengths: floor.shape.iter().flatten().count(), ..Found::default() };
     for entry in entries.iter_mut().filter(|entry| usable(&&**entry)) {
+        entry.floor = floor.at_most(&exposed(entry));
         let Some(scale) = floor.scale(&exposed(entry)) else { continue };
         let mut samples = 0;
         let record = &mut entry.record;

@@ -70,12 +70,38 @@ impl Floor {
         confirmed.then_some(candidate.scale)
     }
 
+    /// The floor of a record at every wavelength, or the highest that it can be where the record lies above it: no
+    /// value is below its floor, and no floor above the highest of the set. Between the wavelengths that have a shape it
+    /// is drawn geometrically: good enough for a noise, not for a flag.
+    pub(super) fn at_most(&self, spectrum: &Exposed<'_>) -> Option<Vec<f64>> {
+        let highest = self.confirmed[0].last().copied().unwrap_or(f64::INFINITY);
+        let smallest = self.ratios(spectrum).map(|(_, ratio)| ratio).min_by(f64::total_cmp)?;
+        let scale = self.scale(spectrum).unwrap_or(smallest.min(highest));
+        (0..self.shape.len()).map(|index| self.drawn(index).map(|shape| shape * scale)).collect()
+    }
+
+    /// The shape at a wavelength, or between its neighbours.
+    fn drawn(&self, index: usize) -> Option<f64> {
+        let known = |index: usize| self.shape[index].map(|shape| (index as f64, shape));
+        let before = (0..=index).rev().find_map(known);
+        let after = (index..self.shape.len()).find_map(known);
+        match (before, after) {
+            (Some((from, low)), Some((to, high))) if to > from => {
+                Some(low * (high / low).powf((index as f64 - from) / (to - from)))
+            }
+            (nearest, other) => nearest.or(other).map(|(_, shape)| shape),
+        }
+    }
+
+    /// The positive values that have a shape, with their ratios to it.
+    fn ratios(&self, spectrum: &Exposed<'_>) -> impl Iterator<Item = (f64, f64)> {
+        let pairs = spectrum.values.iter().zip(&self.shape);
+        pairs.filter_map(|(value, shape)| shape.filter(|_| *value > 0.0).map(|shape| (*value, value / shape)))
+    }
+
     /// The smallest ratio to the shape, and how many wavelengths give it.
     fn candidate(&self, spectrum: &Exposed<'_>) -> Option<Candidate> {
-        let ratios = || {
-            let pairs = spectrum.values.iter().zip(&self.shape);
-            pairs.filter_map(|(value, shape)| shape.filter(|_| *value > 0.0).map(|shape| (*value, value / shape)))
-        };
+        let ratios = || self.ratios(spectrum);
         let (_, smallest) = ratios().min_by(|a, b| a.1.total_cmp(&b.1))?;
         // A short exposure lifts the floor and, with it, what a floor may be.
         let allowed = LIMIT.min(self.limit * smallest.max(1.0));

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::angles::{Angles, Written};
-use super::error::{ImportError, fault};
+use super::error::{ImportError, fault_of};
 use super::keys::Settings;
 use super::rows::{Row, Rows};
 use super::source::Source;
@@ -37,10 +37,8 @@ fn geometry(row: &Row<'_>, declared: Option<Angles>) -> Result<GeometryRow, Impo
     let written = row.angles()?.ok_or_else(|| row.bad("angles", "", "the angles of a geometry"))?;
     let (geometry, signed) = match written {
         Written::Full([ti, pi, tv, pv]) if !matches!(declared, Some(Angles::Signed(_))) => {
-            let geometry = Geometry::from_degrees(ti, pi, tv, pv).map_err(|error| {
-                let expected = "theta from 0 to 180 and phi from 0 up to 360 degrees";
-                ImportError::Malformed(fault(row.place(), error.to_string(), expected, "correct the angle"))
-            })?;
+            let geometry = Geometry::from_degrees(ti, pi, tv, pv)
+                .map_err(|error| ImportError::Malformed(fault_of(row.place(), &error, "correct the angle")))?;
             (geometry, None)
         }
         Written::Full(_) => (written.geometry(declared, &row.place())?, None),

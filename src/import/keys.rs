@@ -195,7 +195,7 @@ impl Settings {
                 if let (Some(here), Some(there)) = (&self.$field, &other.$field)
                     && here != there
                 {
-                    found.push((stringify!($field), format!("{here:?}"), format!("{there:?}")));
+                    found.push((stringify!($field), quoted(&here.to_string()), quoted(&there.to_string())));
                 }
             )+ };
         }

@@ -11,7 +11,7 @@
 //! notice.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
 
 use super::error::{ImportError, fault, quoted};
 use super::keys::Settings;
@@ -104,12 +104,18 @@ struct Files {
 impl Files {
     fn records(&mut self, name: &str, notes: &mut Notes) -> Result<&[Record], ImportError> {
         if !self.records.contains_key(name) {
-            let source = Source::read(&self.folder.join(name), name)?;
+            let path = beside(&self.folder, name);
+            let source = Source::read(&path, &path.display().to_string())?;
             let records = spectra::read(&source, &self.options, notes)?;
             self.records.insert(name.to_owned(), records);
         }
         Ok(self.records.get(name).map_or(&[], Vec::as_slice))
     }
+}
+
+/// A file that a manifest names, as the user can open it from where the command runs.
+pub(super) fn beside(folder: &Path, name: &str) -> PathBuf {
+    folder.join(name).components().filter(|part| *part != Component::CurDir).collect()
 }
 
 fn entry(row: &Row<'_>, plan: &mut Plan, files: &mut Files, notes: &mut Notes) -> Result<Entry, ImportError> {
@@ -175,11 +181,12 @@ fn check_files(
     let missing: Vec<String> = names
         .iter()
         .filter(|(name, _)| !folder.join(name).is_file())
-        .map(|(name, line)| format!("{name} (line {line})"))
+        .map(|(name, line)| format!("{} (line {line})", beside(folder, name).display()))
         .collect();
     let unlisted = unlisted(manifest, folder, &names);
     if !missing.is_empty() {
         let manifest = source.name.clone();
+        let unlisted = unlisted.iter().map(|name| beside(folder, name).display().to_string()).collect();
         return Err(ImportError::MissingFiles { manifest, listed: names.len(), missing, unlisted });
     }
     if !unlisted.is_empty() {

@@ -49,6 +49,7 @@ mod raw;
 mod receipt;
 mod record;
 mod reference;
+mod repeats;
 mod rows;
 mod scan;
 mod scan_order;
@@ -68,7 +69,7 @@ pub use geometry_csv::{GeometryRow, read_geometries};
 pub use keys::{KEYS, Settings};
 pub use source::MAX_FILE_BYTES;
 
-use crate::dataset::{Document, Place, Role};
+use crate::dataset::{Document, Measurement, Place, Role};
 use crate::quantity::{Geometry, named};
 use error::fault;
 use receipt::Notes;
@@ -153,6 +154,7 @@ pub fn import(inputs: &[PathBuf], options: &Options) -> Result<Document, ImportE
     let is_described = receipt.inputs.first().is_some_and(|input| input.dialect.starts_with("manifest"));
     names::make_relative(&mut receipt, inputs, is_described);
     document.provenance.receipts.push(receipt);
+    document.measurements.iter_mut().for_each(Measurement::state_directions);
     document.check()?;
     Ok(document)
 }

@@ -1,18 +1,17 @@
 //! Names that do not depend on how a path was typed: in a document, files are named relative to the folder that the
-//! inputs share, and a manifest by itself. Messages of errors keep the path as typed.
+//! inputs share, and those of a manifest as it names them. Messages of errors keep the path as typed, for whoever reads
+//! them wants to open the file.
 
 use std::path::{Component, Path, PathBuf};
 
 use crate::dataset::{Place, Receipt};
 
-/// Renames the files of a receipt. With `alone`, only the input itself was named by the caller (a manifest).
+/// Renames the files of a receipt. With `alone`, the input is a manifest, which names all others.
 pub(super) fn make_relative(receipt: &mut Receipt, inputs: &[PathBuf], alone: bool) {
-    let typed: Vec<String> = inputs.iter().map(|input| input.display().to_string()).collect();
-    let read = receipt.inputs.iter().map(|input| input.name.clone()).filter(|_| !alone);
-    let names: Vec<String> = typed.into_iter().chain(read).collect();
-    let Some(folder) = common_folder(&names) else { return };
-    let mut table: Vec<(String, String)> =
-        names.into_iter().filter_map(|name| relative(&name, &folder).map(|short| (name, short))).collect();
+    let mut table = match inputs {
+        [manifest] if alone => beside_manifest(receipt, manifest),
+        inputs => in_common_folder(receipt, inputs),
+    };
     table.retain(|(name, short)| name != short);
     // The longest first: a name may begin with another.
     table.sort_by(|a, b| b.0.len().cmp(&a.0.len()).then_with(|| a.0.cmp(&b.0)));
@@ -37,6 +36,24 @@ pub(super) fn make_relative(receipt: &mut Receipt, inputs: &[PathBuf], alone: bo
         place(&mut notice.place);
         notice.text = renamed(&notice.text, &table);
     }
+}
+
+/// The files of a manifest, as it names them: with or without the folder in which it lies.
+fn beside_manifest(receipt: &Receipt, manifest: &Path) -> Vec<(String, String)> {
+    let folder = manifest.parent().unwrap_or(Path::new(""));
+    let short = |name: &str| {
+        let inside = Path::new(name).strip_prefix(folder).ok().filter(|inside| inside.is_relative())?;
+        Some(inside.components().map(|part| part.as_os_str().to_string_lossy()).collect::<Vec<_>>().join("/"))
+    };
+    receipt.inputs.iter().filter_map(|input| Some((input.name.clone(), short(&input.name)?))).collect()
+}
+
+/// All files, relative to the folder that they share.
+fn in_common_folder(receipt: &Receipt, inputs: &[PathBuf]) -> Vec<(String, String)> {
+    let typed = inputs.iter().map(|input| input.display().to_string());
+    let names: Vec<String> = typed.chain(receipt.inputs.iter().map(|input| input.name.clone())).collect();
+    let Some(folder) = common_folder(&names) else { return Vec::new() };
+    names.into_iter().filter_map(|name| relative(&name, &folder).map(|short| (name, short))).collect()
 }
 
 /// The folder that all the files lie in.

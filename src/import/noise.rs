@@ -1,9 +1,10 @@
 //! The noise of a PR-650 record where repeats do not show it.
 //!
 //! sigma^2 = s0(lambda)^2 + (b L)^2 + q^2 for each sample, and a scale error c L that a record's samples share; from
-//! the repeats of a real unit: b = 0.003, c = 0.003, s0 the level of the dark samples, q the step of the last printed
-//! digit over sqrt(12). The unit's s0 was 5e-6 W m-2 sr-1 nm-1 at short exposures; where the set holds smaller values
-//! at a wavelength, the noise there cannot be larger than they are.
+//! the repeats of a real unit: b = 0.003, c = 0.003, q the step of the last printed digit over sqrt(12), s0 the noise of
+//! the dark. A short exposure lifts the floor of the instrument and the noise with it: s0 is the floor of the record
+//! itself. Where no floor is seen in the set, s0 is 5e-6 W m-2 sr-1 nm-1 (that of a real unit at short exposures), and
+//! no larger than the smallest value of the set at the wavelength.
 
 use super::plan::Entry;
 use crate::quantity::{Flag, Flags};
@@ -14,7 +15,7 @@ const RELATIVE: f64 = 0.003;
 /// Relative error of scale that the samples of a record share.
 pub(super) const RECORD_SCALE: f64 = 0.003;
 
-/// Absolute noise where the set does not show a smaller one, W m-2 sr-1 nm-1.
+/// Noise of the dark where the set shows neither a floor nor a smaller value, W m-2 sr-1 nm-1.
 const DARK_NOISE: f64 = 5e-6;
 
 /// Significant bits of a computed uncertainty: five decimal digits, more than any is worth. The other bits would be
@@ -50,8 +51,13 @@ impl Noise {
     }
 
     /// Standard uncertainty of one sample without the shared scale, in the unit of the value; NaN where it is missing.
-    pub(super) fn sigma(&self, value: f64, step: f64, flags: Flags, index: usize) -> f64 {
-        let dark = self.dark.get(index).copied().unwrap_or(DARK_NOISE);
+    pub(super) fn sigma(&self, entry: &Entry, index: usize) -> f64 {
+        let record = &entry.record;
+        let value = record.values.get(index).copied().unwrap_or(f64::NAN);
+        let step = record.steps.get(index).copied().unwrap_or(0.0);
+        let flags = record.flags.get(index).copied().unwrap_or(Flags::NONE);
+        let floor = entry.floor.as_ref().and_then(|floor| floor.get(index));
+        let dark = floor.or(self.dark.get(index)).copied().unwrap_or(DARK_NOISE);
         let rounding = step / 12.0_f64.sqrt();
         let sigma = (dark * dark + (RELATIVE * value).powi(2) + rounding * rounding).sqrt();
         let doubtful = flags.contains(Flag::LowLight) || flags.contains(Flag::Noisy);
@@ -62,9 +68,11 @@ impl Noise {
     pub(super) fn describe() -> String {
         format!(
             "uncertainty by the noise model sigma^2 = s0^2 + (b L)^2 + q^2 with b = {RELATIVE}, q = the last printed \
-             digit / sqrt(12), s0 = the smallest value of the set at the wavelength, at most {DARK_NOISE:e} (that for \
-             texts with fixed decimals); doubled for the quality codes 18 and 30; and a scale error of {RECORD_SCALE} \
-             that the samples of a record share; exposure is not taken into account; kept to {KEPT_BITS} significant bits"
+             digit / sqrt(12), s0 = the floor of the record (where the record lies above it, the highest that it can be; \
+             between wavelengths with a known floor drawn geometrically), or without a floor the smallest value of the \
+             set at the wavelength, at most {DARK_NOISE:e} (that for texts with fixed decimals); doubled for the \
+             quality codes 18 and 30; and a scale error of {RECORD_SCALE} that the samples of a record share; kept to \
+             {KEPT_BITS} significant bits"
         )
     }
 }

@@ -19,14 +19,11 @@ pub(super) fn document(settings: &Settings) -> Document {
 
 /// The bandpass that the caller states, else the one that the instrument reported.
 pub(super) fn bandpass(settings: &Settings, reported_nm: Option<f64>) -> Bandpass {
-    settings
-        .bandpass_nm
-        .or(reported_nm)
-        .map_or(Bandpass::Unstated, |fwhm| Bandpass::Stated {
-            fwhm_nm: vec![fwhm],
-            shape: BandpassShape::Unstated,
-            correction: BandpassCorrection::Unstated,
-        })
+    settings.bandpass_nm.or(reported_nm).map_or(Bandpass::Unstated, |fwhm| Bandpass::Stated {
+        fwhm_nm: vec![fwhm],
+        shape: BandpassShape::Unstated,
+        correction: BandpassCorrection::Unstated,
+    })
 }
 
 /// The excitation states of a measurement, each once.

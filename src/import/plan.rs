@@ -29,6 +29,8 @@ pub(super) struct Entry {
     pub(super) exposure_ms: Option<f64>,
     /// Where the entry is stated.
     pub(super) place: Place,
+    /// The instrument's floor at each wavelength: the noise of the dark; `None` where the set does not show it.
+    pub(super) floor: Option<Vec<f64>>,
 }
 
 impl Entry {
@@ -45,6 +47,7 @@ impl Entry {
             time: None,
             exposure_ms: None,
             place,
+            floor: None,
         }
     }
 }

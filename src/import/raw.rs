@@ -62,10 +62,10 @@ pub(super) fn noise(plan: &Plan, notes: &mut Notes) -> Option<Noise> {
     Some(Noise::of(&measured))
 }
 
-/// The raw measurements: one per role in a scan or where there is a reference, else one per file.
-pub(super) fn measurements(plan: &Plan, noise: Option<&Noise>) -> Vec<Measurement> {
+/// The raw measurements: one per role in a scan, of repeats, and where there is a reference; else one per file.
+pub(super) fn measurements(plan: &Plan, repeats: bool, noise: Option<&Noise>) -> Vec<Measurement> {
     let mut raw = Vec::new();
-    let together = plan.scan || plan.of(Role::White).next().is_some();
+    let together = repeats || plan.scan || plan.of(Role::White).next().is_some();
     for (role, id) in [(Role::Sample, ""), (Role::White, "white"), (Role::Dark, "dark")] {
         let entries: Vec<(usize, &Entry)> =
             plan.entries.iter().enumerate().filter(|(_, entry)| entry.role == role).collect();
@@ -151,8 +151,7 @@ fn measurement(
             let mask = entry.record.flags.get(column).copied().unwrap_or(Flags::NONE.with(Flag::NotMeasured));
             values[at] = entry.record.values.get(column).copied().unwrap_or(f64::NAN);
             flags[at] = mask.0;
-            let step = entry.record.steps.get(column).copied().unwrap_or(0.0);
-            sigma[at] = noise.map_or(f64::NAN, |noise| kept(noise.sigma(values[at], step, mask, column)));
+            sigma[at] = noise.map_or(f64::NAN, |noise| kept(noise.sigma(entry, column)));
         }
     }
     let components = noise.map(|_| record_scale(RECORD_SCALE)).into_iter().collect();

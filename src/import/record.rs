@@ -102,6 +102,11 @@ impl Record {
         if self.number == 1 { self.file.clone() } else { format!("{} record {}", self.file, self.number) }
     }
 
+    /// What a notice at its place begins with: columns of one file share their lines.
+    pub(crate) fn prefix(&self) -> String {
+        if self.number == 1 { String::new() } else { format!("record {}: ", self.number) }
+    }
+
     /// Gives a flag to every sample.
     pub(crate) fn flag_all(&mut self, flag: Flag) {
         for flags in &mut self.flags {

@@ -73,7 +73,7 @@ pub(super) fn groups(
 }
 
 /// Repeats are rows of one geometry and excitation. Outside a scan only the caller knows whether records are repeats.
-fn sample_groups(sample: &Measurement, scan: bool, repeats: bool) -> Vec<Vec<usize>> {
+pub(super) fn sample_groups(sample: &Measurement, scan: bool, repeats: bool) -> Vec<Vec<usize>> {
     let mut index: BTreeMap<_, usize> = BTreeMap::new();
     let mut groups: Vec<Vec<usize>> = Vec::new();
     for (row, acquisition) in sample.acquisitions.iter().enumerate() {

@@ -83,6 +83,11 @@ impl Rows {
                 Ok(false) => break,
                 Ok(true) => {
                     let line = first - 1 + record.position().map_or(1, csv::Position::line);
+                    refuse_comment(
+                        &record,
+                        rows.first().map(|(_, names): &(u64, Vec<String>)| names.len()),
+                        source.at_line(line),
+                    )?;
                     rows.push((line, record.iter().map(|field| decimal_point(field, semicolons)).collect::<Vec<_>>()));
                 }
                 Err(error) => {
@@ -222,6 +227,23 @@ impl<'a> Row<'a> {
     pub(crate) fn bad(&self, column: &str, found: &str, expected: &str) -> ImportError {
         malformed(self.place(), format!("{} in the column `{column}`", quoted(found)), expected)
     }
+}
+
+/// Keys and comments stand above the header: below it, a key would hold for some rows and not for others. A file may
+/// have a name that begins with `#`, in a row of as many fields as the header's `columns`.
+fn refuse_comment(record: &csv::StringRecord, columns: Option<usize>, place: Place) -> Result<(), ImportError> {
+    let first = record.get(0).unwrap_or("");
+    let is_row = columns == Some(record.len()) && !first.starts_with("# ");
+    if !first.starts_with('#') || is_row {
+        return Ok(());
+    }
+    let text: Vec<&str> = record.iter().collect();
+    Err(ImportError::Call(fault(
+        place,
+        format!("the comment {} below the header", quoted(&text.join(","))),
+        "a row of the table",
+        "take the line out, or say it as `# key: value` above the header",
+    )))
 }
 
 /// A field of a table divided by semicolons: a number with a decimal comma gets a point.

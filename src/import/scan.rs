@@ -5,7 +5,7 @@ use super::error::{ImportError, fault};
 use super::plan::{Entry, Plan, first_record};
 use super::receipt::{Notes, listed};
 use super::record::Record;
-use super::{Options, factor, floor, parts, raw, spectra, times};
+use super::{Options, factor, floor, parts, raw, repeats, spectra, times};
 use crate::dataset::{Document, Measurement, Place, Role};
 use crate::quantity::{Geometry, QuantityKind};
 
@@ -25,15 +25,14 @@ pub(super) fn assemble(mut plan: Plan, options: &Options, notes: &mut Notes) -> 
     let mut document = parts::document(&plan.settings);
     for (light, entry) in raw::lights(&plan, notes) {
         if document.lights.iter().any(|known| known.id == light.id) {
-            let text =
-                format!("{}: a second spectrum of the light `{}`; the first is kept", entry.record.label(), light.id);
-            notes.notice(entry.place.clone(), text);
+            let text = format!("a second spectrum of the light `{}`; the first is kept", light.id);
+            notes.notice(entry.record.place(), text);
         } else {
             document.lights.push(light);
         }
     }
     let noise = raw::noise(&plan, notes);
-    let mut measurements = raw::measurements(&plan, noise.as_ref());
+    let mut measurements = raw::measurements(&plan, options.repeats, noise.as_ref());
     if plan.of(Role::White).next().is_some() && plan.of(Role::Sample).next().is_some() {
         let (reference, derived) = factor::derive(&plan, &measurements, noise.as_ref(), options, notes)?;
         for white in measurements.iter_mut().filter(|raw| raw.role == Role::White) {
@@ -41,13 +40,12 @@ pub(super) fn assemble(mut plan: Plan, options: &Options, notes: &mut Notes) -> 
         }
         document.white_references.push(reference);
         measurements.push(derived);
-    } else if plan.scan && plan.of(Role::Sample).next().is_some() {
-        notes.notice(plan.place.clone(), "no white reference: the scan stays radiance, no factor is derived");
-    }
-    let repeated = options.repeats || plan.of(Role::Sample).any(|entry| entry.repeat.is_some_and(|repeat| repeat > 1));
-    if repeated && plan.of(Role::White).next().is_none() {
-        let text = "repeats are kept as rows of their own and not averaged: there is no white reference";
-        notes.notice(plan.place.clone(), text);
+    } else {
+        if plan.scan && plan.of(Role::Sample).next().is_some() {
+            notes.notice(plan.place.clone(), "no white reference: the scan stays radiance, no factor is derived");
+        }
+        let means = repeats::average(&plan, &measurements, noise.as_ref(), options.repeats, notes);
+        measurements.extend(means);
     }
     attach(&mut document, measurements, &plan, notes);
     Ok(document)
@@ -97,7 +95,7 @@ fn require_one_axis_and_kind(plan: &Plan) -> Result<(), ImportError> {
         if record.kind != first.kind {
             return Err(ImportError::Contradiction(fault(
                 record.place(),
-                format!("a mixed quantity: {} in {}, {} in {}", record.kind, record.label(), first.kind, first.label()),
+                format!("a mixed quantity: {} where {} holds {}", record.kind, first.label(), first.kind),
                 "one quantity in a set",
                 "import the sets apart, or give irradiance of the lamp the role `lamp`",
             )));
@@ -105,7 +103,7 @@ fn require_one_axis_and_kind(plan: &Plan) -> Result<(), ImportError> {
         if record.nm != first.nm {
             return Err(ImportError::Contradiction(fault(
                 record.place(),
-                format!("{} in {} where {} has {}", range(record), record.label(), first.label(), range(first)),
+                format!("{} where {} has {}", range(record), first.label(), range(first)),
                 "one wavelength axis in a set",
                 "import the sets apart, or look for lost rows",
             )));
@@ -164,8 +162,7 @@ fn note_stale(plan: &mut Plan, notes: &mut Notes) {
     for index in floor::flag_stale(&mut plan.entries) {
         let (before, copy) = (&plan.entries[index - 1], &plan.entries[index]);
         let text = format!(
-            "{} is bit for bit equal to {} before it: the instrument may have repeated an old buffer; flagged stale-buffer",
-            copy.record.label(),
+            "bit for bit equal to {} before it: the instrument may have repeated an old buffer; flagged stale-buffer",
             before.record.label()
         );
         notes.notice(copy.record.place(), text);
@@ -217,10 +214,6 @@ fn note_times(plan: &Plan, notes: &mut Notes) {
 
 /// Says once for a list of spectra what a scan would have said in its manifest.
 pub(super) fn note_plain_list(plan: &Plan, notes: &mut Notes) {
-    let unknown: Vec<(Place, String)> = plan
-        .of(Role::Sample)
-        .filter(|entry| entry.geometry.is_none())
-        .map(|entry| (entry.record.place(), format!("{}: its geometry is unknown", entry.record.label())))
-        .collect();
-    spectra::note_each(notes, unknown, "records without a geometry");
+    let unknown = plan.of(Role::Sample).filter(|entry| entry.geometry.is_none());
+    spectra::note_each(notes, unknown.map(|entry| entry.record.place()).collect(), "the geometry is unknown");
 }

@@ -137,9 +137,9 @@ fn note_precision(record: &Record, notes: &mut Notes) {
     }
     let zeros = record.values.iter().filter(|value| **value == 0.0).count();
     let text = format!(
-        "{}: fixed {decimals} decimals: precision {step:e}; {coarse} of {} values may be off by more than 1 % ({zeros} \
+        "{}fixed {decimals} decimals: precision {step:e}; {coarse} of {} values may be off by more than 1 % ({zeros} \
          printed as zero, flagged below-detection); if the instrument's own text exists, import that",
-        record.label(),
+        record.prefix(),
         record.values.len()
     );
     notes.notice(record.place(), text);
@@ -162,9 +162,9 @@ fn note_luminance(record: &Record, notes: &mut Notes) {
     let ratio = computed / reported;
     let per_band = if (3.5..5.5).contains(&ratio) { "; the values may be per band and not per nm" } else { "" };
     let text = format!(
-        "{}: the reported luminance {reported} is not that of the spectrum ({computed:.4} cd m-2, or {:.4} fL): ratio \
+        "{}the reported luminance {reported} is not that of the spectrum ({computed:.4} cd m-2, or {:.4} fL): ratio \
          {ratio:.3}{per_band}",
-        record.label(),
+        record.prefix(),
         computed / CD_PER_FOOTLAMBERT
     );
     notes.notice(Place::file(record.file.as_str()).at_line(line), text);
@@ -182,14 +182,14 @@ fn luminance(record: &Record) -> f64 {
     step * record.nm.iter().zip(&record.values).map(|(nm, value)| luminous_efficacy(*nm) * value).sum::<f64>()
 }
 
-/// Notices of one kind, joined when there are many of them.
-pub(super) fn note_each(notes: &mut Notes, places: Vec<(Place, String)>, summary: &str) {
+/// The same notice at several places, joined when there are many of them.
+pub(super) fn note_each(notes: &mut Notes, places: Vec<Place>, text: &str) {
     if places.len() <= LISTED {
-        for (place, text) in places {
+        for place in places {
             notes.notice(place, text);
         }
         return;
     }
-    let texts: Vec<String> = places.iter().map(|(_, text)| text.clone()).collect();
-    notes.notice(Place::default(), format!("{} {summary}: {}", texts.len(), super::receipt::listed(&texts)));
+    let names: Vec<String> = places.iter().map(ToString::to_string).collect();
+    notes.notice(Place::default(), format!("{text} ({} records): {}", names.len(), super::receipt::listed(&names)));
 }

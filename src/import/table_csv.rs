@@ -40,7 +40,7 @@ use std::collections::BTreeMap;
 use ndarray::Array2;
 
 use super::angles::{Angles, check_habit};
-use super::error::{ImportError, fault, quoted};
+use super::error::{ImportError, fault, fault_of, quoted};
 use super::keys::Settings;
 use super::manifest::note_overridden;
 use super::number::value;
@@ -238,9 +238,8 @@ impl Table {
             )));
         }
         let axis = WavelengthAxis::new(nm, parts::bandpass(settings, None));
-        axis.map(EmissionAxis::Wavelengths).map_err(|error| {
-            ImportError::Malformed(fault(source.at_line(1), error.to_string(), "ascending wavelengths", "correct them"))
-        })
+        axis.map(EmissionAxis::Wavelengths)
+            .map_err(|error| ImportError::Malformed(fault_of(source.at_line(1), &error, "correct it")))
     }
 
     fn measurement(self, source: &Source, settings: &Settings, has_sigma: bool) -> Result<Measurement, ImportError> {

@@ -28,4 +28,6 @@ pub use photometry::luminous_efficacy;
 pub(crate) use uncertainty::rows_plain;
 pub use uncertainty::{Component, CorrelatedOver, ErrorDistribution, EvaluationType, Statement, Uncertainty};
 pub use unit::SiUnit;
-pub use wavelength::{Band, Bandpass, BandpassCorrection, BandpassShape, EmissionAxis, WavelengthAxis, WavelengthError};
+pub use wavelength::{
+    Band, Bandpass, BandpassCorrection, BandpassShape, EmissionAxis, WavelengthAxis, WavelengthError,
+};

@@ -152,6 +152,20 @@ impl EmissionAxis {
         self.len() == 0
     }
 
+    /// The axis of some of its values, by ascending index; a band is one value.
+    #[must_use]
+    pub fn selection(&self, indices: &[usize]) -> Self {
+        let Self::Wavelengths(axis) = self else { return self.clone() };
+        let of = |list: &[f64]| indices.iter().filter_map(|index| list.get(*index)).copied().collect::<Vec<f64>>();
+        let bandpass = match &axis.bandpass {
+            Bandpass::Stated { fwhm_nm, shape, correction } if fwhm_nm.len() == axis.nm.len() && fwhm_nm.len() > 1 => {
+                Bandpass::Stated { fwhm_nm: of(fwhm_nm), shape: *shape, correction: *correction }
+            }
+            same => same.clone(),
+        };
+        Self::Wavelengths(WavelengthAxis { nm: of(&axis.nm), bandpass, actual_nm: of(&axis.actual_nm) })
+    }
+
     /// The wavelengths in nm, if the axis has any.
     #[must_use]
     pub fn wavelengths(&self) -> Option<&[f64]> {

@@ -80,7 +80,8 @@ impl Checked {
             Status::Unreadable => "NOT READABLE",
         };
         let [errors, warnings, notes] =
-            [(Severity::Error, "error"), (Severity::Warning, "warning"), (Severity::Info, "note")].map(|(severity, noun)| counted(self.count(severity), noun));
+            [(Severity::Error, "error"), (Severity::Warning, "warning"), (Severity::Info, "note")]
+                .map(|(severity, noun)| counted(self.count(severity), noun));
         format!("{}: {verdict} ({errors}, {warnings}, {notes})", self.file)
     }
 }

@@ -20,7 +20,11 @@ use Severity::{Error, Info, Warning};
 
 /// Every profile; the first is the default.
 pub const PROFILES: &[Profile] = &[
-    Profile { name: "exchange", purpose: "a file from one laboratory to another: every rule has its own severity", grades: &[] },
+    Profile {
+        name: "exchange",
+        purpose: "a file from one laboratory to another: every rule has its own severity",
+        grades: &[],
+    },
     Profile {
         name: "archive",
         purpose: "a file that must be understood in twenty years, without its makers: what is unstated is an error",

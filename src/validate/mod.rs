@@ -22,9 +22,9 @@ pub use checked::{Checked, validate_file, validate_files};
 pub use context::Context;
 pub use finding::{Finding, Report, Severity, Status};
 pub use grading::{Grading, PROFILES, Profile, UnknownRule, profile};
+pub use registry::{CLAUSES, RULES, Rule, rule};
 #[cfg(feature = "write")]
 pub use repair::{NotRepaired, Repair, repair};
-pub use registry::{CLAUSES, RULES, Rule, rule};
 
 /// Validates the bytes of a file.
 #[must_use]

@@ -5,13 +5,8 @@ use super::validate_bytes;
 use crate::container::{Limits, Mismatch, WriteError, inspect, rewrite};
 
 /// Rules whose findings go away when the document is written again.
-const REPAIRED: &[&str] = &[
-    "structure.conventions",
-    "structure.attributes",
-    "structure.bytes",
-    "digest.missing",
-    "quantity.si-unit",
-];
+const REPAIRED: &[&str] =
+    &["structure.conventions", "structure.attributes", "structure.bytes", "digest.missing", "quantity.si-unit"];
 
 /// What a repair would do.
 #[derive(Debug)]
@@ -30,7 +25,9 @@ pub enum NotRepaired {
     #[error("not repaired: the document cannot be read in full; the findings say why")]
     Unreadable,
     /// Content differs from its digest.
-    #[error("not repaired: the content of {0} does not have its digest, and nobody knows what it was; fetch the file again")]
+    #[error(
+        "not repaired: the content of {0} does not have its digest, and nobody knows what it was; fetch the file again"
+    )]
     Changed(String),
     /// Content beside the standard that could not be kept.
     #[error("not repaired: {0} would be lost, because its values are of a type that is not written here")]
@@ -47,7 +44,8 @@ pub enum NotRepaired {
 pub fn repair(bytes: &[u8]) -> Result<Option<Repair>, NotRepaired> {
     let before = validate_bytes(bytes);
     let names = |report: &super::Report| -> Vec<&'static str> {
-        let mut names: Vec<&str> = report.findings.iter().filter_map(|f| super::rule(f.rule)).map(super::Rule::name).collect();
+        let mut names: Vec<&str> =
+            report.findings.iter().filter_map(|f| super::rule(f.rule)).map(super::Rule::name).collect();
         names.dedup();
         names
     };

@@ -37,7 +37,10 @@ pub(super) struct Worst<P> {
 }
 
 /// The worst of all z-scores, if it is beyond the threshold for their number.
-pub(super) fn worst<P>(scores: impl IntoIterator<Item = (P, f64)>, degrees_of_freedom: Option<f64>) -> Option<Worst<P>> {
+pub(super) fn worst<P>(
+    scores: impl IntoIterator<Item = (P, f64)>,
+    degrees_of_freedom: Option<f64>,
+) -> Option<Worst<P>> {
     let scores: Vec<(P, f64)> = scores.into_iter().filter(|(_, z)| z.is_finite()).collect();
     let threshold = threshold(scores.len(), degrees_of_freedom);
     let beyond = scores.iter().filter(|(_, z)| *z > threshold).count();

@@ -210,17 +210,18 @@ fn array() -> impl Strategy<Value = Array> {
         numbers(5).prop_map(Data::F64),
         vec(text(), 0..4).prop_map(Data::Text),
     ];
-    (data, any::<bool>()).prop_map(|(data, scalar)| if scalar && data.len() == 1 { Array::scalar(data) } else { Array::vector(data) })
+    (data, any::<bool>())
+        .prop_map(|(data, scalar)| if scalar && data.len() == 1 { Array::scalar(data) } else { Array::vector(data) })
 }
 
 fn extension(domain: Id) -> impl Strategy<Value = Extension> {
     let attributes = || proptest::collection::btree_map("[a-z]{1,8}", array(), 0..3);
-    let dataset = (array(), attributes())
-        .prop_map(|(array, attributes)| Dataset { attributes, ..Dataset::new(array) });
+    let dataset = (array(), attributes()).prop_map(|(array, attributes)| Dataset { attributes, ..Dataset::new(array) });
     let datasets = proptest::collection::btree_map("d[a-z]{1,8}", dataset, 0..3);
     (attributes(), datasets).prop_map(move |(attributes, datasets)| {
         let child = Group { attributes: attributes.clone(), ..Group::default() };
-        let content = Group { attributes, datasets: datasets.into_iter().collect(), groups: vec![("child".into(), child)] };
+        let content =
+            Group { attributes, datasets: datasets.into_iter().collect(), groups: vec![("child".into(), child)] };
         Extension { domain: domain.clone(), content }
     })
 }

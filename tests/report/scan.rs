@@ -96,8 +96,7 @@ fn measurement() -> Measurement {
     let value = |(row, column): (usize, usize)| rows[row].0.to_radians().cos() * spectrum(nm[column]);
     let values = Array2::from_shape_fn((rows.len(), nm.len()), value);
     let geometry = |(i, v): &(f64, f64)| Geometry::from_signed(*i, *v, SignHabit::MirrorAtEqual).ok();
-    let shared =
-        Component::new("certified factor", vec![0.005], CorrelatedOver::All);
+    let shared = Component::new("certified factor", vec![0.005], CorrelatedOver::All);
     let quantity = Quantity {
         kind: QuantityKind::RadianceFactor,
         part: Part::Total,

@@ -75,6 +75,9 @@ struct FittedModel {
     converged: bool,
     /// How a spectrum became the fitted number.
     reduction: String,
+    /// Wavelengths of the amplitudes, nm, in the order of their lists; none where one band was fitted.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    emission_nm: Option<Vec<f64>>,
     /// Reference convention of the fitted numbers.
     reference: String,
     /// The terms.
@@ -181,7 +184,7 @@ pub(crate) fn run(arguments: &Arguments) -> CommandResult {
 }
 
 fn fit_file(arguments: &Arguments, file: &Path, output: Option<&Path>) -> Result<FittedModel, miette::Report> {
-    let mut document = container::open_verified(file).map_err(|error| miette!("{error}"))?;
+    let (mut document, foreign) = container::open_to_rewrite(file).map_err(|error| miette!("{error}"))?;
     let measurement = choose(&document, arguments.measurement.as_deref(), file)?;
     let options = FitOptions {
         terms: arguments.terms.clone(),
@@ -199,7 +202,15 @@ fn fit_file(arguments: &Arguments, file: &Path, output: Option<&Path>) -> Result
     let result = fitted_model(file, &model, seconds);
     if let Some(output) = output {
         store(&mut document, model);
-        container::write_file(&document, output).map_err(|error| miette!("{error}"))?;
+        if let Some(path) = foreign.lost().first() {
+            let help = "take it out, or write it as numbers or texts";
+            return Err(miette!(
+                help = help,
+                "{}: {path} would be lost: values of a type that is not written here",
+                file.display()
+            ));
+        }
+        container::write_file_keeping(&document, &foreign, output).map_err(|error| miette!("{error}"))?;
     }
     Ok(result)
 }
@@ -287,6 +298,7 @@ fn fitted_model(file: &Path, model: &Model, seconds: f64) -> FittedModel {
         measurement: model.measurement.to_string(),
         converged: model.converged,
         reduction: model.reduction.clone(),
+        emission_nm: model.emission.wavelengths().map(<[f64]>::to_vec),
         reference: model.reference.to_string(),
         terms,
         covariance: CovarianceResult {

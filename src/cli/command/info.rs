@@ -6,11 +6,11 @@ use miette::miette;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::validate::counted;
 use crate::cli::exit::{CommandResult, Outcome};
 use crate::cli::output::{print_json, print_text};
 use crate::container::{self, Opened};
 use crate::dataset::{Measurement, Model};
+use crate::validate::counted;
 
 /// Say what is inside a file.
 #[derive(Debug, clap::Args)]

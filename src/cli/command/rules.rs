@@ -1,11 +1,12 @@
 //! `bbrf rules` and `bbrf explain`: what is checked, and why.
 
+use miette::miette;
 use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::cli::exit::{CommandResult, Outcome};
 use crate::cli::output::{print_json, print_text};
-use crate::validate::{RULES, Rule, Severity, rule};
+use crate::validate::{RULES, Rule, Severity, UnknownRule, rule};
 
 /// List the rules.
 #[derive(Debug, clap::Args)]
@@ -37,6 +38,8 @@ struct RuleText {
     id: &'static str,
     alias: &'static str,
     severity: Severity,
+    /// The clause of the specification that it checks.
+    clause: u8,
     rationale: &'static str,
     /// An example of a violation.
     example: &'static str,
@@ -47,7 +50,7 @@ struct RuleText {
 impl From<&Rule> for RuleText {
     fn from(rule: &Rule) -> Self {
         let Rule { id, alias, severity, rationale, example, repair, .. } = rule;
-        Self { id, alias, severity: *severity, rationale, example, repair }
+        Self { id, alias, severity: *severity, clause: rule.clause(), rationale, example, repair }
     }
 }
 
@@ -62,15 +65,17 @@ pub(crate) fn run(arguments: &Arguments) -> CommandResult {
 }
 
 pub(crate) fn explain(arguments: &ExplainArguments) -> CommandResult {
-    let rule = rule(&arguments.rule).ok_or_else(|| miette!(help = "bbrf rules lists them", "{}", UnknownRule(arguments.rule.clone())))?;
+    let rule = rule(&arguments.rule)
+        .ok_or_else(|| miette!(help = "bbrf rules lists them", "{}", UnknownRule(arguments.rule.clone())))?;
     if arguments.json {
         print_json("bbrf:rules:1", &RulesResult { rules: vec![rule.into()] })?;
     } else {
         print_text(&format!(
-            "{} ({}), {}\n\n{}\n\nFor example: {}.\nRepair: {}",
+            "{} ({}), {}, clause {} of the specification\n\n{}\n\nFor example: {}.\nRepair: {}",
             rule.id,
             rule.alias,
             rule.severity.name(),
+            rule.clause(),
             rule.rationale,
             rule.example,
             rule.repair

@@ -162,7 +162,10 @@ fn excitations(at: &At<'_>) -> Result<Vec<Excitation>, ReadError> {
                 polarisation: table.stated(&polarisations, row, 4),
                 actual_nm: table.stated(&actual, row, 5),
                 shape: table.stated(&shapes, row, 6).map(|name| parsed(&name, &shape_path)).transpose()?,
-                correction: table.stated(&corrections, row, 7).map(|name| parsed(&name, &correction_path)).transpose()?,
+                correction: table
+                    .stated(&corrections, row, 7)
+                    .map(|name| parsed(&name, &correction_path))
+                    .transpose()?,
             })
         })
         .collect()
@@ -201,7 +204,9 @@ fn direction_tests(at: &At<'_>) -> Result<Vec<DirectionTest>, ReadError> {
     let (incidence, viewing) = (vectors(name::DIRECTION_TEST_INCIDENCE)?, vectors(name::DIRECTION_TEST_VIEWING)?);
     let vector = |all: &Array2<f64>, row: usize| [all[(row, 0)], all[(row, 1)], all[(row, 2)]];
     let tests = rows.iter().enumerate();
-    Ok(tests.map(|(i, &row)| DirectionTest { row, incidence: vector(&incidence, i), viewing: vector(&viewing, i) }).collect())
+    Ok(tests
+        .map(|(i, &row)| DirectionTest { row, incidence: vector(&incidence, i), viewing: vector(&viewing, i) })
+        .collect())
 }
 
 fn derivation(at: &At<'_>) -> Result<Derivation, ReadError> {

@@ -44,7 +44,11 @@ pub(super) fn extensions(at: &At<'_>) -> Result<Vec<Extension>, ReadError> {
 /// Without what other programs add when they copy a file.
 fn without_foreign(group: &Group) -> Group {
     let own = |attributes: &Attributes| {
-        attributes.iter().filter(|(name, _)| !is_outside_digest(name)).map(|(name, array)| (name.clone(), array.clone())).collect()
+        attributes
+            .iter()
+            .filter(|(name, _)| !is_outside_digest(name))
+            .map(|(name, array)| (name.clone(), array.clone()))
+            .collect()
     };
     let datasets = group.datasets.iter().map(|(name, dataset)| {
         (name.clone(), Dataset { attributes: own(&dataset.attributes), ..Dataset::new(dataset.array.clone()) })
@@ -91,7 +95,10 @@ fn wavelength_axis(at: &At<'_>) -> Result<WavelengthAxis, ReadError> {
                 shape: parsed(&shape, &format!("{path}@{}", name::SHAPE))?,
                 correction: match dataset.attributes.get(name::CORRECTION) {
                     None => BandpassCorrection::Unstated,
-                    Some(_) => parsed(&dataset_text(dataset, name::CORRECTION, &path)?, &format!("{path}@{}", name::CORRECTION))?,
+                    Some(_) => parsed(
+                        &dataset_text(dataset, name::CORRECTION, &path)?,
+                        &format!("{path}@{}", name::CORRECTION),
+                    )?,
                 },
             }
         }

@@ -156,7 +156,9 @@ fn components(group: &mut Group, components: &[Component], emission: &str) -> Re
         let name = format!("{}{position}", name::COMPONENT);
         let dataset = group.vector(&name, Data::F64(component.relative.clone()), emission);
         dataset.unit("1").long_name("relative standard uncertainty shared between values");
-        dataset.checked_text(name::CAUSE, &component.name)?.checked_text(name::CORRELATED_OVER, component.correlated_over.name())?;
+        dataset
+            .checked_text(name::CAUSE, &component.name)?
+            .checked_text(name::CORRELATED_OVER, component.correlated_over.name())?;
         encode_attributes(&mut dataset.attributes, &component.statement)?;
     }
     Ok(())

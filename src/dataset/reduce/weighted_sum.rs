@@ -94,6 +94,7 @@ impl<'a> WeightedSum<'a> {
             sigma: has_sigma.then(|| Array2::from_shape_fn(shape, |(_, k)| self.sigma(rows[k]))),
             shared_relative: vec![self.shared_relative(&rows)],
             left_out: count - rows.len(),
+            left_out_emission: 0,
             emission: EmissionAxis::Band { band: Some(self.band) },
             reduction: self.name,
             notes: self.notes,

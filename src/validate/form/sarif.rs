@@ -64,14 +64,17 @@ fn result(finding: &Finding) -> Result<serde_sarif::sarif::Result, serde_json::E
         .build();
     let text = format!("found {}; expected {}. {}", finding.found, finding.expected, finding.advice);
     let index = RULES.iter().position(|rule| rule.id == finding.rule).unwrap_or_default();
-    let properties = serde_json::from_value::<PropertyBag>(serde_json::json!({ "z": finding.z, "alias": finding.alias }))?;
+    let properties =
+        serde_json::from_value::<PropertyBag>(serde_json::json!({ "z": finding.z, "alias": finding.alias }))?;
     Ok(serde_sarif::sarif::Result::builder()
         .rule_id(finding.rule)
         .rule_index(i64::try_from(index).unwrap_or_default())
         .level(level(finding.severity))
         .message(Message::builder().text(text).build())
         .locations(vec![location])
-        .partial_fingerprints([("bbrf/v1".to_owned(), finding.fingerprint())].into_iter().collect::<std::collections::BTreeMap<_, _>>())
+        .partial_fingerprints(
+            [("bbrf/v1".to_owned(), finding.fingerprint())].into_iter().collect::<std::collections::BTreeMap<_, _>>(),
+        )
         .properties(properties)
         .build())
 }

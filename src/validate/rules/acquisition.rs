@@ -76,14 +76,23 @@ pub(in super::super) fn derivation(context: &Context<'_>, found: &mut Finder) {
         let rows_of = |id: &str| document.measurement(id).map(|m| m.acquisitions.len());
         let groups = derivation.reference_group.iter().copied().max().map_or(0, |last| i64::from(last) + 1);
         let lists = [
-            (name::NUMERATOR_ROW, &derivation.numerator_row, measurement.acquisitions.len() as i64, rows_of(derivation.numerator.as_str())),
+            (
+                name::NUMERATOR_ROW,
+                &derivation.numerator_row,
+                measurement.acquisitions.len() as i64,
+                rows_of(derivation.numerator.as_str()),
+            ),
             (name::REFERENCE_GROUP, &derivation.reference_group, i64::MAX, rows_of(derivation.reference.as_str())),
             (name::ROW_REFERENCE, &derivation.row_reference, groups, Some(measurement.acquisitions.len())),
         ];
         for (list, indices, below, length) in lists {
             let place = Place::path(format!("{path}/{}/{list}", name::DERIVATION));
             if let Some(at) = indices.iter().position(|index| !(-1..below).contains(&i64::from(*index))) {
-                found.add(place.clone().at_index([at]), indices[at].to_string(), format!("-1, or an index below {below}"));
+                found.add(
+                    place.clone().at_index([at]),
+                    indices[at].to_string(),
+                    format!("-1, or an index below {below}"),
+                );
             }
             if length.is_some_and(|length| length != indices.len()) {
                 let expected = length.map_or(String::new(), |length| format!("{length}, one for each row"));

@@ -62,7 +62,9 @@ pub(in super::super) fn expired(context: &Context<'_>, found: &mut Finder) {
         ];
         for (list, id) in uses.into_iter().filter_map(|(list, id)| Some((list, id?.as_str()))) {
             let chain = match list {
-                name::INSTRUMENT => document.instruments.iter().find(|part| part.id.as_str() == id).map(|part| &part.calibration),
+                name::INSTRUMENT => {
+                    document.instruments.iter().find(|part| part.id.as_str() == id).map(|part| &part.calibration)
+                }
                 _ => document.white_references.iter().find(|part| part.id.as_str() == id).map(|part| &part.calibration),
             };
             for (k, link) in chain.into_iter().flatten().enumerate() {
@@ -81,9 +83,11 @@ pub(in super::super) fn missing(context: &Context<'_>, found: &mut Finder) {
         let place = Place::path(format!("/{}/{}", name::INSTRUMENT, instrument.id));
         found.add(place, "no calibration", "artefact, certificate, day and expiry of its calibration");
     }
-    for reference in document.white_references.iter().filter(|reference| {
-        reference.calibration.is_empty() && reference.certificate.is_none()
-    }) {
+    for reference in document
+        .white_references
+        .iter()
+        .filter(|reference| reference.calibration.is_empty() && reference.certificate.is_none())
+    {
         let place = Place::path(format!("/{}/{}", name::WHITE_REFERENCE, reference.id));
         found.add(place, "no certificate", "the certificate that its factor rests on");
     }

@@ -86,7 +86,11 @@ pub(in super::super) fn self_test(context: &Context<'_>, found: &mut Finder) {
                 let agrees = stated.iter().zip(computed).all(|(a, b)| (a - b).abs() <= VECTOR_TOLERANCE);
                 if !agrees {
                     let place = Place::path(format!("{path}/{dataset}")).at_index([index]);
-                    found.add(place, format!("{stated:?}{}", habit(stated, computed)), format!("{computed:?}, from the angles"));
+                    found.add(
+                        place,
+                        format!("{stated:?}{}", habit(stated, computed)),
+                        format!("{computed:?}, from the angles"),
+                    );
                 }
             }
         }
@@ -139,11 +143,16 @@ pub(in super::super) fn grazing(context: &Context<'_>, found: &mut Finder) {
         let at_horizon = |row: usize| {
             let geometry = measurement.acquisitions[row].geometry;
             let grazes = geometry.is_some_and(|g| g.incidence.theta_deg() == 90.0 || g.viewing.theta_deg() == 90.0);
-            grazes && (0..measurement.emission.len()).any(|column| !measurement.flags_at(row, column).explains_absence())
+            grazes
+                && (0..measurement.emission.len()).any(|column| !measurement.flags_at(row, column).explains_absence())
         };
         if let Some(row) = (0..measurement.acquisitions.len()).find(|row| at_horizon(*row)) {
             let place = Place::path(format!("{path}/{}", name::VALUE)).at_index([row]);
-            found.add(place, "a value at 90 degrees", "a direction above the surface: there is no surface to see along it");
+            found.add(
+                place,
+                "a value at 90 degrees",
+                "a direction above the surface: there is no surface to see along it",
+            );
         }
     }
 }
@@ -152,7 +161,8 @@ pub(in super::super) fn footprint(context: &Context<'_>, found: &mut Finder) {
     let Some(document) = context.document() else { return };
     for (path, measurement) in context.measurements().filter(|(_, measurement)| measurement.role == Role::Sample) {
         let sample = measurement.sample.as_ref().and_then(|id| document.samples.iter().find(|part| part.id == *id));
-        let instrument = measurement.instrument.as_ref().and_then(|id| document.instruments.iter().find(|part| part.id == *id));
+        let instrument =
+            measurement.instrument.as_ref().and_then(|id| document.instruments.iter().find(|part| part.id == *id));
         let extent = sample.and_then(|sample| Some(sample.width_mm?.get().min(sample.height_mm?.get())));
         let (Some(extent), Some(spot)) = (extent, instrument.and_then(Instrument::spot_mm)) else { continue };
         let footprint = |row: &Acquisition| row.geometry.map(|geometry| spot / geometry.viewing.cos_theta());

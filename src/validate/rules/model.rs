@@ -101,7 +101,9 @@ pub(in super::super) fn residuals(context: &Context<'_>, found: &mut Finder) {
         let stored = &model.residuals;
         let fitted = fitted_parameters(model, data.values.nrows());
         let Ok((_, computed)) = crate::dataset::residuals(model, &data, fitted) else { continue };
-        let differs = |a: f64, b: f64| !(a.is_nan() && b.is_nan()) && !((a - b).abs() <= RECOMPUTED * b.abs().max(f64::MIN_POSITIVE));
+        let differs = |a: f64, b: f64| {
+            !(a.is_nan() && b.is_nan()) && !((a - b).abs() <= RECOMPUTED * b.abs().max(f64::MIN_POSITIVE))
+        };
         let numbers = [
             (name::RESIDUAL_RMS, stored.rms, computed.rms),
             (name::REDUCED_CHI_SQUARE, stored.reduced_chi_square, computed.reduced_chi_square),
@@ -110,7 +112,11 @@ pub(in super::super) fn residuals(context: &Context<'_>, found: &mut Finder) {
         for (attribute, stored, computed) in numbers {
             if differs(stored, computed) {
                 let place = Place::path(format!("{path}@{attribute}"));
-                found.add(place, stored.to_string(), format!("{computed}, which the stored terms leave on the stored data"));
+                found.add(
+                    place,
+                    stored.to_string(),
+                    format!("{computed}, which the stored terms leave on the stored data"),
+                );
             }
         }
     }
@@ -143,7 +149,11 @@ pub(in super::super) fn uncertainty(context: &Context<'_>, found: &mut Finder) {
                     found.add(place, format!("{found_u} uncertainties"), format!("{expected}, one for each value"));
                 } else if let Some(at) = fitted.standard_uncertainty.iter().position(|u| *u < 0.0 || u.is_infinite()) {
                     let value = fitted.standard_uncertainty[at];
-                    found.add(place.at_index([at]), value.to_string(), "zero or more, or NaN where the data cannot tell");
+                    found.add(
+                        place.at_index([at]),
+                        value.to_string(),
+                        "zero or more, or NaN where the data cannot tell",
+                    );
                 }
             }
         }

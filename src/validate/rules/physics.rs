@@ -10,9 +10,7 @@ use super::super::finding::Finder;
 use super::super::significance::{Worst, worst};
 use crate::container::layout::name;
 use crate::dataset::{Measurement, Place, Role, Symmetry};
-use crate::quantity::{
-    Bandpass, Basis, CorrelatedOver, EmissionAxis, Finite, Geometry, Part, QuantityKind, Reference,
-};
+use crate::quantity::{Bandpass, Basis, CorrelatedOver, EmissionAxis, Finite, Geometry, Part, QuantityKind, Reference};
 
 type Cell = (usize, usize);
 
@@ -40,7 +38,11 @@ fn cells(measurement: &Measurement) -> impl Iterator<Item = Cell> {
 }
 
 fn report(found: &mut Finder, path: &str, cell: Cell, worst: &Worst<impl Copy>, what: String, expected: &str) {
-    let more = if worst.beyond > 1 { format!("; {} values are beyond {:.1}", worst.beyond, worst.threshold) } else { String::new() };
+    let more = if worst.beyond > 1 {
+        format!("; {} values are beyond {:.1}", worst.beyond, worst.threshold)
+    } else {
+        String::new()
+    };
     let place = Place::path(format!("{path}/{}", name::VALUE)).at_index([cell.0, cell.1]);
     found.add_scored(place, format!("{what}, z = {:.1}{more}", worst.z), expected, worst.z);
 }
@@ -90,7 +92,8 @@ pub(in super::super) fn anti_stokes(context: &Context<'_>, found: &mut Finder) {
         };
         if let Some(worst) = worst(cells(measurement).filter_map(score), degrees_of_freedom(measurement)) {
             let excited = excitation(measurement, worst.place.0).map_or(f64::NAN, |excitation| excitation.0);
-            let what = format!("{} at {} nm under {excited} nm", measurement.values[worst.place], emission[worst.place.1].0);
+            let what =
+                format!("{} at {} nm under {excited} nm", measurement.values[worst.place], emission[worst.place.1].0);
             report(found, &path, worst.place, &worst, what, "nothing: emission has less energy than what excites it");
         }
     }
@@ -137,7 +140,8 @@ fn exceeds_one(context: &Context<'_>, found: &mut Finder, power: impl Fn(Basis) 
     for (path, measurement) in context.measurements() {
         let Some(power) = power(measurement.quantity.basis) else { continue };
         let sums: BTreeMap<Cell, (f64, f64)> = balance(measurement, power).into_iter().collect();
-        let scores = sums.iter().filter(|(_, (_, sigma))| *sigma > 0.0).map(|(cell, (sum, sigma))| (*cell, (sum - 1.0) / sigma));
+        let scores =
+            sums.iter().filter(|(_, (_, sigma))| *sigma > 0.0).map(|(cell, (sum, sigma))| (*cell, (sum - 1.0) / sigma));
         if let Some(worst) = worst(scores, degrees_of_freedom(measurement)) {
             let sum = sums.get(&worst.place).map_or(f64::NAN, |sum| sum.0);
             report(found, &path, worst.place, &worst, format!("{sum:.4} out of 1 over the row"), expected);
@@ -189,7 +193,8 @@ fn compare(
     let mut scores = Vec::new();
     for (row, acquisition) in measurement.acquisitions.iter().enumerate() {
         let Some(geometry) = &acquisition.geometry else { continue };
-        let partner = images(geometry).into_iter().find_map(|image| by_key.get(&(acquisition.excitation, key(image))).copied());
+        let partner =
+            images(geometry).into_iter().find_map(|image| by_key.get(&(acquisition.excitation, key(image))).copied());
         if let Some((partner, other)) = partner.and_then(|p| Some((p, measurement.acquisitions[p].geometry?))) {
             let (this, that) = (factor(geometry), factor(&other));
             for column in 0..measurement.emission.len() {
@@ -206,7 +211,13 @@ fn compare(
     scores
 }
 
-fn report_pair(found: &mut Finder, path: &str, measurement: &Measurement, scores: Vec<((Cell, usize), f64)>, expected: &str) {
+fn report_pair(
+    found: &mut Finder,
+    path: &str,
+    measurement: &Measurement,
+    scores: Vec<((Cell, usize), f64)>,
+    expected: &str,
+) {
     if let Some(worst) = worst(scores, degrees_of_freedom(measurement)) {
         let ((row, column), partner) = worst.place;
         let (a, b) = (measurement.values[(row, column)], measurement.values[(partner, column)]);
@@ -220,7 +231,9 @@ pub(in super::super) fn reciprocity(context: &Context<'_>, found: &mut Finder) {
         let factor: fn(&Geometry) -> f64 = match (measurement.quantity.kind, measurement.quantity.reference) {
             (QuantityKind::Brdf, _) => |_| 1.0,
             (kind, Reference::SameGeometry) if kind.is_factor() => |_| 1.0,
-            (kind, Reference::FixedGeometry { .. }) if kind.is_factor() => |geometry| 1.0 / geometry.incidence.cos_theta(),
+            (kind, Reference::FixedGeometry { .. }) if kind.is_factor() => {
+                |geometry| 1.0 / geometry.incidence.cos_theta()
+            }
             _ => continue,
         };
         let exchanged = |g: &Geometry| {
@@ -230,7 +243,13 @@ pub(in super::super) fn reciprocity(context: &Context<'_>, found: &mut Finder) {
         };
         let own_image = |row: &((Cell, usize), f64)| row.0.0.0 != row.0.1;
         let scores = compare(measurement, exchanged, factor).into_iter().filter(own_image).collect();
-        report_pair(found, &path, measurement, scores, "equal after division by cos(theta_i): incidence and viewing may be exchanged");
+        report_pair(
+            found,
+            &path,
+            measurement,
+            scores,
+            "equal after division by cos(theta_i): incidence and viewing may be exchanged",
+        );
     }
 }
 
@@ -258,6 +277,12 @@ pub(in super::super) fn symmetry(context: &Context<'_>, found: &mut Finder) {
 pub(in super::super) fn drift(context: &Context<'_>, found: &mut Finder) {
     for (path, measurement) in context.measurements().filter(|(_, m)| m.role == Role::Sample) {
         let scores = compare(measurement, |geometry| vec![angles(geometry)], |_| 1.0);
-        report_pair(found, &path, measurement, scores, "equal: it is the same geometry again, so lamp or sample changed");
+        report_pair(
+            found,
+            &path,
+            measurement,
+            scores,
+            "equal: it is the same geometry again, so lamp or sample changed",
+        );
     }
 }

@@ -12,7 +12,12 @@ fn each(context: &Context<'_>, found: &mut Finder, expected: &str, says: impl Fn
 }
 
 /// The same where the place matters.
-fn each_at(context: &Context<'_>, found: &mut Finder, expected: &str, says: impl Fn(&str, &Construct) -> Option<String>) {
+fn each_at(
+    context: &Context<'_>,
+    found: &mut Finder,
+    expected: &str,
+    says: impl Fn(&str, &Construct) -> Option<String>,
+) {
     for (path, construct) in &context.inspection.unusual {
         if let Some(what) = says(path, construct) {
             found.add(Place::path(path), what, expected);
@@ -97,7 +102,9 @@ pub(in super::super) fn enumeration(context: &Context<'_>, found: &mut Finder) {
 
 pub(in super::super) fn compound(context: &Context<'_>, found: &mut Finder) {
     each(context, found, "one array for each field", |construct| match construct {
-        Construct::Compound(kind) => Some(format!("a {kind} type, which R, Julia and MATLAB read each in their own way")),
+        Construct::Compound(kind) => {
+            Some(format!("a {kind} type, which R, Julia and MATLAB read each in their own way"))
+        }
         _ => None,
     });
 }
@@ -118,7 +125,9 @@ pub(in super::super) fn user_block(context: &Context<'_>, found: &mut Finder) {
 
 pub(in super::super) fn superblock(context: &Context<'_>, found: &mut Finder) {
     each(context, found, "superblock version 0, 2 or 3", |construct| match construct {
-        Construct::Superblock(version) => Some(format!("superblock version {version}, which libmysofa and others refuse")),
+        Construct::Superblock(version) => {
+            Some(format!("superblock version {version}, which libmysofa and others refuse"))
+        }
         _ => None,
     });
 }

@@ -8,7 +8,8 @@ use crate::dataset::Place;
 pub(in super::super) fn source_digest(context: &Context<'_>, found: &mut Finder) {
     let Some(document) = context.document() else { return };
     for (index, receipt) in document.provenance.receipts.iter().enumerate() {
-        let malformed = |text: &str| text.len() != 64 || !text.bytes().all(|b| b.is_ascii_digit() || (b'a'..=b'f').contains(&b));
+        let malformed =
+            |text: &str| text.len() != 64 || !text.bytes().all(|b| b.is_ascii_digit() || (b'a'..=b'f').contains(&b));
         if let Some(input) = receipt.inputs.iter().find(|input| malformed(&input.sha256)) {
             let place = Place::path(format!("/{}/{}", name::PROVENANCE, name::RECEIPTS)).at_index([index]);
             found.add(place, format!("`{}` for {}", input.sha256, input.name), "64 hexadecimal digits, lower case");
@@ -48,7 +49,11 @@ pub(in super::super) fn license(context: &Context<'_>, found: &mut Finder) {
 
 fn is_spdx_word(word: &str) -> bool {
     word.chars().all(|c| c.is_ascii_alphanumeric() || matches!(c, '-' | '.' | '+' | ':'))
-        && (word.is_empty() || matches!(word, "AND" | "OR" | "WITH") || word.contains('-') || word.chars().any(|c| c.is_ascii_digit()) || word.len() <= 12)
+        && (word.is_empty()
+            || matches!(word, "AND" | "OR" | "WITH")
+            || word.contains('-')
+            || word.chars().any(|c| c.is_ascii_digit())
+            || word.len() <= 12)
 }
 
 pub(in super::super) fn extension_domain(context: &Context<'_>, found: &mut Finder) {

@@ -87,7 +87,10 @@ pub(in super::super) fn shapes(context: &Context<'_>, found: &mut Finder) {
 pub(in super::super) fn attributes(context: &Context<'_>, found: &mut Finder) {
     for mismatch in &context.inspection.mismatches {
         let Mismatch::Attribute(path) = mismatch else { continue };
-        let is_rule_of_its_own = path.ends_with("@units") || path.contains("@unit_si_") || path.ends_with("@Conventions") || path == "/@bbrf_version";
+        let is_rule_of_its_own = path.ends_with("@units")
+            || path.contains("@unit_si_")
+            || path.ends_with("@Conventions")
+            || path == "/@bbrf_version";
         if !is_rule_of_its_own {
             found.add(Place::path(path), "something else, or nothing", "what the rest of the file calls for");
         }

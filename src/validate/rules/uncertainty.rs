@@ -108,9 +108,12 @@ fn each_value(
 }
 
 pub(in super::super) fn of_value(context: &Context<'_>, found: &mut Finder) {
-    each_value(context, found, "the uncertainty of the value, or a flag that it is not to be used", |_, value, sigma| {
-        sigma.is_nan().then(|| format!("NaN for the value {value}"))
-    });
+    each_value(
+        context,
+        found,
+        "the uncertainty of the value, or a flag that it is not to be used",
+        |_, value, sigma| sigma.is_nan().then(|| format!("NaN for the value {value}")),
+    );
 }
 
 pub(in super::super) fn zero(context: &Context<'_>, found: &mut Finder) {
