@@ -44,7 +44,7 @@ fn equal_findings_are_one_line_of_text_and_all_of_json() {
     let shown = text(Command::cargo_bin("bbrf").unwrap().arg("validate").arg(&file));
     assert_eq!(shown.matches("BB0304").count(), 1, "{shown}");
     assert!(shown.contains(" places: "), "{shown}");
-    assert!(shown.contains("(0 errors, ") && shown.contains(" warnings, 0 notes)"), "{shown}");
+    assert!(shown.contains("(0 errors, ") && shown.contains(" warnings, "), "{shown}");
     let json = text(Command::cargo_bin("bbrf").unwrap().args(["validate", "--json"]).arg(&file));
     assert!(json.matches("BB0304").count() >= 2);
     let info = text(Command::cargo_bin("bbrf").unwrap().arg("info").arg(&file));

@@ -53,15 +53,16 @@ pub(super) fn worst<P>(
 mod tests {
     use super::*;
 
-    /// Quantiles of the normal distribution at 1 - a/n to ten digits, from mpmath with 40.
+    /// Quantiles at the Sidak level, from mpmath with 40 digits.
     #[test]
     fn the_threshold_grows_slowly_with_the_number_of_values() {
-        for (count, expected) in [(1, 2.982_878_4), (27_472, 5.326_0), (100_000_000, 6.786)] {
+        for (count, expected) in [(1, 2.982_703_875_49), (27_472, 5.319_458_844_83), (100_000_000, 6.653_646_692_31)] {
             let z = threshold(count, None);
-            assert!((z - expected).abs() < 6e-3, "{count}: {z}");
+            assert!((z / expected - 1.0).abs() < 1e-7, "{count}: {z}");
         }
         // A standard deviation of three repeats says little.
-        assert!(threshold(1000, Some(2.0)) > 100.0);
+        let student = threshold(1000, Some(2.0));
+        assert!((student / 591.395_544_821 - 1.0).abs() < 1e-6, "{student}");
     }
 
     #[test]
