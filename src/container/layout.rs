@@ -220,7 +220,7 @@ pub fn table() -> &'static [Entry] {
         table.extend(entries::<Conditions>("/measurement/*"));
         table.extend(entries::<Statement>("/**/value_u"));
         table.extend(entries::<Statement>("/measurement/*/value_u_shared_*"));
-        table.sort_by(|a, b| written::order(&a.path).cmp(&written::order(&b.path)));
+        table.sort_by_key(|entry| written::order(&entry.path));
         table
     });
     &TABLE

@@ -17,6 +17,7 @@ mod significance;
 
 use crate::container::{Limits, inspect};
 
+#[cfg(feature = "write")]
 pub(crate) use checked::counted;
 pub use checked::{Checked, validate_file, validate_files};
 pub use context::Context;

@@ -173,7 +173,8 @@ fn direction_tests(group: &mut Group, tests: &[DirectionTest]) {
     group.index_scale(name::XYZ, 3);
     let rows = Data::U32(tests.iter().map(|test| test.row).collect());
     group.vector(name::DIRECTION_TEST_ROW, rows, name::DIRECTION_TEST).long_name("row of the measurement");
-    let vectors: [(&str, &str, fn(&DirectionTest) -> [f64; 3]); 2] = [
+    type Vector = fn(&DirectionTest) -> [f64; 3];
+    let vectors: [(&str, &str, Vector); 2] = [
         (name::DIRECTION_TEST_INCIDENCE, "unit vector from the surface to the source", |test| test.incidence),
         (name::DIRECTION_TEST_VIEWING, "unit vector from the surface to the detector", |test| test.viewing),
     ];

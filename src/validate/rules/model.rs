@@ -98,11 +98,15 @@ pub(in super::super) fn residuals(context: &Context<'_>, found: &mut Finder) {
         // Another reduction than the standard's, or data that cannot be reduced, leave nothing to compare.
         let Ok(reduction) = model.reduction.parse::<Reduction>() else { continue };
         let Ok(data) = reduce(document, measurement, reduction) else { continue };
+        if data.emission != model.emission {
+            continue;
+        }
         let stored = &model.residuals;
         let fitted = fitted_parameters(model, data.values.nrows());
         let Ok((_, computed)) = crate::dataset::residuals(model, &data, fitted) else { continue };
         let differs = |a: f64, b: f64| {
-            !(a.is_nan() && b.is_nan()) && !((a - b).abs() <= RECOMPUTED * b.abs().max(f64::MIN_POSITIVE))
+            let near = (a - b).abs() <= RECOMPUTED * b.abs().max(f64::MIN_POSITIVE);
+            !(near || a.is_nan() && b.is_nan())
         };
         let numbers = [
             (name::RESIDUAL_RMS, stored.rms, computed.rms),

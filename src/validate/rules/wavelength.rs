@@ -100,8 +100,8 @@ pub(in super::super) fn actual_length(context: &Context<'_>, found: &mut Finder)
 pub(in super::super) fn actual_near(context: &Context<'_>, found: &mut Finder) {
     for (path, axis) in axes(context) {
         let step = axis.nm.windows(2).map(|pair| pair[1] - pair[0]).fold(f64::INFINITY, f64::min);
-        let far = |(nominal, actual): (&f64, &f64)| !((nominal - actual).abs() < step);
-        if let Some(index) = axis.nm.iter().zip(&axis.actual_nm).position(far) {
+        let near = |(nominal, actual): (&f64, &f64)| (nominal - actual).abs() < step;
+        if let Some(index) = axis.nm.iter().zip(&axis.actual_nm).position(|pair| !near(pair)) {
             let place = Place::path(format!("{path}/{}", name::WAVELENGTH_ACTUAL)).at_index([index]);
             let expected = format!("within a step ({step} nm) of the nominal {} nm", axis.nm[index]);
             found.add(place, format!("{} nm", axis.actual_nm[index]), expected);
