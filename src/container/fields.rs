@@ -5,6 +5,8 @@
 //! A text becomes a string, a number float64, a truth value uint8 0 or 1. A field that is absent has no attribute. Lists
 //! of numbers are no descriptions; they are datasets, and left to the caller.
 
+use std::sync::LazyLock;
+
 use schemars::JsonSchema;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -15,18 +17,41 @@ use super::encode::without_nul;
 use super::error::{EncodeError, ReadError};
 use super::layout::{Entry, Kind};
 use super::tree::{Array, Attributes, Data, Group};
+use crate::dataset::{Conditions, Instrument, Light, Sample, WhiteReference};
+use crate::quantity::Statement;
 
 /// Fields that are not attributes: the identifier is the name of the group.
 const NAMES: [&str; 2] = ["id", "domain"];
 
+/// A struct whose fields are attributes.
+pub(super) trait Description: Serialize + DeserializeOwned {
+    /// Its fields, from its JSON Schema; looked up once.
+    fn fields() -> &'static [Property];
+}
+
+macro_rules! descriptions {
+    ($($kind:ty),+) => {
+        $(impl Description for $kind {
+            fn fields() -> &'static [Property] {
+                static FIELDS: LazyLock<Vec<Property>> = LazyLock::new(properties::<$kind>);
+                &FIELDS
+            }
+        })+
+    };
+}
+descriptions!(Sample, Instrument, Light, WhiteReference, Conditions, Statement);
+
 /// Writes the fields of a description, and the lists of descriptions in it as groups.
-pub(super) fn encode_fields(group: &mut Group, description: &impl Serialize) -> Result<(), EncodeError> {
+pub(super) fn encode_fields(group: &mut Group, description: &impl Description) -> Result<(), EncodeError> {
     let Value::Object(fields) = as_json(description)? else { return Ok(()) };
     put_fields(group, fields)
 }
 
 /// The same for the attributes of a dataset.
-pub(super) fn encode_attributes(attributes: &mut Attributes, description: &impl Serialize) -> Result<(), EncodeError> {
+pub(super) fn encode_attributes(
+    attributes: &mut Attributes,
+    description: &impl Description,
+) -> Result<(), EncodeError> {
     let Value::Object(fields) = as_json(description)? else { return Ok(()) };
     for (name, value) in fields {
         put_attribute(attributes, &name, &value)?;
@@ -70,12 +95,8 @@ fn put_attribute(attributes: &mut Attributes, name: &str, value: &Value) -> Resu
 }
 
 /// Reads a description back. `id` is that of the group, for descriptions that have one.
-pub(super) fn decode_fields<T: DeserializeOwned + JsonSchema>(
-    group: &Group,
-    path: &str,
-    id: Option<&str>,
-) -> Result<T, ReadError> {
-    let mut fields = read_fields(group, path, &properties(&schemars::schema_for!(T).to_value()))?;
+pub(super) fn decode_fields<T: Description>(group: &Group, path: &str, id: Option<&str>) -> Result<T, ReadError> {
+    let mut fields = read_fields(group, path, T::fields())?;
     if let Some(id) = id {
         fields.insert("id".to_owned(), Value::String(id.to_owned()));
     }
@@ -83,12 +104,9 @@ pub(super) fn decode_fields<T: DeserializeOwned + JsonSchema>(
 }
 
 /// Reads a description from the attributes of a dataset.
-pub(super) fn decode_attributes<T: DeserializeOwned + JsonSchema>(
-    attributes: &Attributes,
-    path: &str,
-) -> Result<T, ReadError> {
+pub(super) fn decode_attributes<T: Description>(attributes: &Attributes, path: &str) -> Result<T, ReadError> {
     let mut fields = Map::new();
-    for property in properties(&schemars::schema_for!(T).to_value()) {
+    for property in T::fields() {
         read_attribute(&mut fields, attributes, path, &property)?;
     }
     from_json(fields, path)
@@ -140,9 +158,9 @@ fn read_attribute(
 }
 
 /// The rows of the table of the standard that a description gives, for a path.
-pub(super) fn entries<T: JsonSchema>(path: &str) -> Vec<Entry> {
+pub(super) fn entries<T: Description>(path: &str) -> Vec<Entry> {
     let mut rows = Vec::new();
-    list(path, &properties(&schemars::schema_for!(T).to_value()), &mut rows);
+    list(path, T::fields(), &mut rows);
     rows
 }
 
@@ -182,7 +200,7 @@ fn unit(property: &Property) -> &'static str {
 }
 
 /// A field of a description.
-struct Property {
+pub(super) struct Property {
     name: String,
     /// Element type in a file; for a list of descriptions that of nothing.
     kind: &'static str,
@@ -191,9 +209,10 @@ struct Property {
     items: Option<Vec<Property>>,
 }
 
-/// The fields of a JSON Schema, in alphabetical order.
-fn properties(schema: &Value) -> Vec<Property> {
-    fields_of(schema, schema)
+/// The fields of a type, in alphabetical order.
+fn properties<T: JsonSchema>() -> Vec<Property> {
+    let schema = schemars::schema_for!(T).to_value();
+    fields_of(&schema, &schema)
 }
 
 fn fields_of(schema: &Value, root: &Value) -> Vec<Property> {

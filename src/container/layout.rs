@@ -2,6 +2,7 @@
 //! and the tables of the specification take the names from here.
 
 use std::borrow::Cow;
+use std::collections::HashMap;
 use std::sync::LazyLock;
 
 use super::fields::entries;
@@ -229,34 +230,66 @@ pub fn table() -> &'static [Entry] {
 /// The row of the table for a path of a file, as in `/measurement/scan/value@units`.
 #[must_use]
 pub fn find(path: &str) -> Option<&'static Entry> {
+    static INDEX: LazyLock<Index> = LazyLock::new(|| Index::new(table()));
     if path.starts_with("/extension/") {
         return table().iter().find(|entry| entry.path == "/extension/*");
     }
-    table().iter().find(|entry| matches(&entry.path, path))
+    INDEX.find(path)
 }
 
-/// True where the path has the form of the pattern: `*` stands for one or more characters within a name, `/**` for any
-/// groups or none.
-fn matches(pattern: &str, path: &str) -> bool {
-    match (pattern.split_once('@'), path.split_once('@')) {
-        (Some((pattern, expected)), Some((path, attribute))) => {
-            name_matches(expected, attribute) && object_matches(pattern, path)
+/// The table by the last name of its paths. Of names with a `*` there are few.
+struct Index {
+    exact: HashMap<&'static str, Vec<Row>>,
+    patterns: Vec<Row>,
+}
+
+/// A path of the table in its parts: `*` stands for one or more characters within a name, `/**` for any groups or none.
+struct Row {
+    entry: &'static Entry,
+    anywhere: bool,
+    groups: Vec<&'static str>,
+    attribute: Option<&'static str>,
+}
+
+impl Index {
+    fn new(table: &'static [Entry]) -> Self {
+        let mut index = Self { exact: HashMap::new(), patterns: Vec::new() };
+        for entry in table {
+            let (object, attribute) = entry.path.split_once('@').map_or((&*entry.path, None), |(o, a)| (o, Some(a)));
+            let anywhere = object.starts_with("/**");
+            let groups = object.split('/').filter(|name| !name.is_empty() && *name != "**").collect();
+            let row = Row { entry, anywhere, groups, attribute };
+            let last = attribute.or(row.groups.last().copied()).unwrap_or("");
+            if last.contains('*') {
+                index.patterns.push(row);
+            } else {
+                index.exact.entry(last).or_default().push(row);
+            }
         }
-        (None, None) => object_matches(pattern, path),
-        _ => false,
+        index
+    }
+
+    fn find(&self, path: &str) -> Option<&'static Entry> {
+        let (object, attribute) = path.split_once('@').map_or((path, None), |(o, a)| (o, Some(a)));
+        let last = attribute.or(object.rsplit('/').next()).unwrap_or("");
+        let rows = self.exact.get(last).into_iter().flatten().chain(&self.patterns);
+        let names: Vec<&str> = object.split('/').filter(|name| !name.is_empty()).collect();
+        rows.into_iter().find(|row| row.matches(&names, attribute)).map(|row| row.entry)
     }
 }
 
-fn object_matches(pattern: &str, path: &str) -> bool {
-    let names: Vec<&str> = path.split('/').filter(|name| !name.is_empty()).collect();
-    match pattern.strip_prefix("/**") {
-        Some("") => true,
-        Some(last) => names.last().is_some_and(|name| name_matches(last.trim_start_matches('/'), name)),
-        None => {
-            let patterns: Vec<&str> = pattern.split('/').filter(|name| !name.is_empty()).collect();
-            let equal = |(pattern, name): (&&str, &&str)| name_matches(pattern, name);
-            patterns.len() == names.len() && patterns.iter().zip(&names).all(equal)
-        }
+impl Row {
+    fn matches(&self, names: &[&str], attribute: Option<&str>) -> bool {
+        let attribute_fits = match (self.attribute, attribute) {
+            (Some(pattern), Some(name)) => name_matches(pattern, name),
+            (None, None) => true,
+            _ => false,
+        };
+        // Below `/**` only the last names are given.
+        let names = if self.anywhere { &names[names.len().saturating_sub(self.groups.len())..] } else { names };
+        attribute_fits
+            && names.len() == self.groups.len()
+            && self.groups.iter().zip(names).all(|(pattern, name)| name_matches(pattern, name))
     }
 }
 

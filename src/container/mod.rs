@@ -9,6 +9,7 @@
 //! *Invariant:* what is written is read back to the bit; the same document gives the same bytes; a file on disk is the
 //! old one or the new one. Whatever the bytes, reading ends in a document or an error, within [`Limits`].
 
+mod chunk_table;
 mod decode;
 mod digest;
 mod encode;
@@ -27,6 +28,7 @@ pub use crate::dataset::tree;
 #[cfg(feature = "write")]
 mod write;
 
+pub use chunk_table::Chunks;
 pub use digest::{Digest, digest, measurement_digest};
 pub use encoding::{Construct, Encoded};
 pub use error::{EncodeError, ReadError, WriteError};

@@ -3,15 +3,16 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
+use super::chunk_table::Chunks;
 use super::decode::decode;
 use super::digest::{Digest, of_objects, of_tree};
 use super::encode::encode;
 use super::encoding::Encoded;
 use super::error::ReadError;
 use super::foreign::Foreign;
-use super::layout::{self, is_outside_digest, name};
+use super::layout::name;
 use super::limits::Limits;
-use super::read::from_bytes;
+use super::read::{Read, from_bytes};
 use super::tree::{Array, Attributes, Group, Object};
 use crate::dataset::{Document, Place};
 
@@ -73,6 +74,8 @@ pub struct Inspection {
     pub unknown: Vec<String>,
     /// That content itself.
     pub foreign: Foreign,
+    /// Where its chunks lie.
+    pub chunks: Chunks,
     /// Encodings that the standard does not use and some reader cannot read.
     pub unusual: Vec<Encoded>,
     /// What differs from how the document would be written.
@@ -84,7 +87,7 @@ pub struct Inspection {
 /// # Errors
 /// [`ReadError`] when the bytes are no HDF5, damaged, or beyond the limits.
 pub fn inspect(bytes: &[u8], limits: &Limits) -> Result<Inspection, ReadError> {
-    let (tree, unusual) = from_bytes(bytes, limits)?;
+    let Read { tree, unusual, chunks } = from_bytes(bytes, limits)?;
     let document = decode(&tree);
     let stored_digest = stored_text(&tree.attributes, name::DIGEST);
     let canonical = document.as_ref().ok().and_then(|document| encode(document).ok());
@@ -93,10 +96,12 @@ pub fn inspect(bytes: &[u8], limits: &Limits) -> Result<Inspection, ReadError> {
         (Some(canonical), Some(digest)) => mismatches(&tree, canonical, digest, stored_digest.as_deref()),
         _ => Vec::new(),
     };
+    let foreign = Foreign::of(&tree);
     Ok(Inspection {
         unusual,
-        unknown: unknown(&tree),
-        foreign: Foreign::of(&tree),
+        chunks,
+        unknown: foreign.paths().into_iter().map(str::to_owned).collect(),
+        foreign,
         tree,
         document,
         stored_digest,
@@ -205,19 +210,4 @@ fn compare(
 /// netCDF writes an empty text as an array without elements.
 fn is_empty_text(found: Option<&Array>, expected: &Array) -> bool {
     expected.as_text() == Some("") && found.is_some_and(|found| found.data.is_empty())
-}
-
-/// Objects and attributes that the table of the standard does not have.
-fn unknown(tree: &Group) -> Vec<String> {
-    let mut unknown = Vec::new();
-    tree.visit("", &mut |path, object| {
-        if path != "/" && layout::find(path).is_none() {
-            unknown.push(path.to_owned());
-            return;
-        }
-        let attributes = object.attributes().keys().filter(|name| !is_outside_digest(name));
-        let paths = attributes.map(|name| format!("{path}@{name}"));
-        unknown.extend(paths.filter(|path| layout::find(path).is_none()));
-    });
-    unknown
 }

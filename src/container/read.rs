@@ -9,6 +9,7 @@ use hdf5_reader::error::Error;
 use hdf5_reader::messages::link::LinkTarget;
 use hdf5_reader::{Attribute, Datatype, Hdf5File, OpenOptions, StringSize};
 
+use super::chunk_table::Chunks;
 use super::encoding::{self, Construct, Encoded};
 use super::error::ReadError;
 use super::limits::Limits;
@@ -16,11 +17,18 @@ use super::links;
 use super::tree::{Array, Attributes, Data, Dataset, Group};
 use crate::dataset::Place;
 
+/// What a file holds, and how.
+pub(super) struct Read {
+    pub(super) tree: Group,
+    pub(super) unusual: Vec<Encoded>,
+    pub(super) chunks: Chunks,
+}
+
 /// The tree of a file, with what is unusual in its encoding.
 ///
 /// # Errors
 /// [`ReadError`] when the bytes are no HDF5, damaged, or beyond the limits.
-pub(super) fn from_bytes(bytes: &[u8], limits: &Limits) -> Result<(Group, Vec<Encoded>), ReadError> {
+pub(super) fn from_bytes(bytes: &[u8], limits: &Limits) -> Result<Read, ReadError> {
     let size = bytes.len() as u64;
     within("bytes", size, limits.file_bytes, "/")?;
     let decoded = limits.decoded_bytes(size);
@@ -36,9 +44,17 @@ pub(super) fn from_bytes(bytes: &[u8], limits: &Limits) -> Result<(Group, Vec<En
     let root = file.root_group().map_err(|error| ReadError::encoding("/", error))?;
     let mut unusual = Vec::new();
     encoding::of_file(&file, &mut unusual);
-    let mut walk = Walk { file: &file, limits, decoded_left: decoded, objects: 0, decoded_limit: decoded, unusual };
+    let mut walk = Walk {
+        file: &file,
+        limits,
+        decoded_left: decoded,
+        objects: 0,
+        decoded_limit: decoded,
+        unusual,
+        chunks: Chunks::default(),
+    };
     let tree = walk.group(&root, "", 0)?;
-    Ok((tree, walk.unusual))
+    Ok(Read { tree, unusual: walk.unusual, chunks: walk.chunks })
 }
 
 fn within(what: &'static str, found: u64, limit: u64, path: &str) -> Result<(), ReadError> {
@@ -51,6 +67,7 @@ fn within(what: &'static str, found: u64, limit: u64, path: &str) -> Result<(), 
 struct Walk<'a> {
     file: &'a Hdf5File,
     unusual: Vec<Encoded>,
+    chunks: Chunks,
     limits: &'a Limits,
     decoded_limit: u64,
     decoded_left: u64,
@@ -98,6 +115,7 @@ impl Walk<'_> {
         let header =
             self.file.get_or_parse_header(dataset.address()).map_err(|error| ReadError::encoding(path, error))?;
         encoding::of_dataset(dataset, &header, path, &mut self.unusual);
+        self.chunks.take(self.file, &header, shape.len(), path);
         let data = match encoding::unreadable(&header) {
             Some(why) => Data::Other(why),
             None => self.values(dataset, path)?,

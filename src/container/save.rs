@@ -3,6 +3,7 @@
 use std::io::Write;
 use std::path::Path;
 
+use super::chunk_table::Chunks;
 use super::decode::decode;
 use super::digest::{Digest, of_tree, sign};
 use super::encode::encode;
@@ -10,6 +11,7 @@ use super::error::{EncodeError, WriteError};
 use super::foreign::Foreign;
 use super::replace::write_whole;
 use super::tree::Group;
+use super::write::chunks::Source;
 use super::write::to_bytes;
 use crate::dataset::Document;
 
@@ -41,7 +43,7 @@ pub fn rewrite(document: &Document, foreign: &Foreign) -> Result<Vec<u8>, WriteE
     let mut tree = encoded(document)?;
     sign(&mut tree);
     foreign.put_into(&mut tree);
-    to_bytes(&tree)
+    to_bytes(&tree, Source::Values)
 }
 
 /// The bytes of the file that [`write_file`] writes, with the digest of the document.
@@ -51,16 +53,18 @@ pub fn rewrite(document: &Document, foreign: &Foreign) -> Result<Vec<u8>, WriteE
 pub fn document_bytes(document: &Document) -> Result<(Vec<u8>, Digest), WriteError> {
     let mut tree = encoded(document)?;
     let digest = sign(&mut tree);
-    Ok((to_bytes(&tree)?, digest))
+    Ok((to_bytes(&tree, Source::Values)?, digest))
 }
 
-/// The bytes that a document read from a file would be written as; `None` where it has no form in the standard. Unlike
-/// [`document_bytes`] it asks nothing of the document, so that a faulty one can be compared with its file.
+/// The bytes that a document read from a file would be written as, around the chunks that the file has; `None` where it
+/// has others, or the document no form in the standard. Unlike [`document_bytes`] it asks nothing of the document, so
+/// that a faulty one can be compared with its file.
 #[must_use]
-pub fn rewritten_bytes(document: &Document) -> Option<Vec<u8>> {
+pub fn rewritten_bytes(document: &Document, file: Option<(&[u8], &Chunks)>) -> Option<Vec<u8>> {
     let mut tree = encode(document).ok()?;
     sign(&mut tree);
-    to_bytes(&tree).ok()
+    let source = file.map_or(Source::Values, |(bytes, chunks)| Source::File(bytes, &chunks.0));
+    to_bytes(&tree, source).ok()
 }
 
 /// The tree of a consistent document, known to read back as the same document.
@@ -95,5 +99,5 @@ pub fn sign_tree(tree: &mut Group) {
 /// [`WriteError::Library`] when libhdf5 refuses.
 #[doc(hidden)]
 pub fn tree_bytes(tree: &Group) -> Result<Vec<u8>, WriteError> {
-    to_bytes(tree)
+    to_bytes(tree, Source::Values)
 }

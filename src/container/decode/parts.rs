@@ -1,17 +1,14 @@
 //! Samples, instruments, lights, white references, provenance; the emission axis and the quantity.
 
-use schemars::JsonSchema;
-use serde::de::DeserializeOwned;
-
 use super::super::error::ReadError;
-use super::super::fields::decode_fields;
+use super::super::fields::{Description, decode_fields};
 use super::super::layout::{is_outside_digest, name};
 use super::super::tree::{Attributes, Dataset, Group};
 use super::{At, attribute_number, dataset_text, parsed};
 use crate::dataset::{Extension, Id, Light, LightSpectrum, Provenance, WhiteReference};
 use crate::quantity::{Band, Bandpass, BandpassCorrection, EmissionAxis, Quantity, WavelengthAxis};
 
-pub(super) fn described<T: DeserializeOwned + JsonSchema>(id: Id, at: &At<'_>) -> Result<T, ReadError> {
+pub(super) fn described<T: Description>(id: Id, at: &At<'_>) -> Result<T, ReadError> {
     decode_fields(at.group, &at.path, Some(id.as_str()))
 }
 

@@ -1,17 +1,15 @@
 //! Samples, instruments, lights, white references, provenance; and what several parts share: the emission axis and the
 //! quantity.
 
-use serde::Serialize;
-
 use super::super::error::EncodeError;
-use super::super::fields::encode_fields;
+use super::super::fields::{Description, encode_fields};
 use super::super::layout::name;
 use super::super::tree::{Array, Data, Dataset, Group};
 use super::{faithful, without_nul};
 use crate::dataset::{Light, LightSpectrum, Provenance, WhiteReference};
 use crate::quantity::{Bandpass, EmissionAxis, Flag, Quantity, QuantityKind, WavelengthAxis};
 
-pub(super) fn described(part: &impl Serialize) -> Result<Group, EncodeError> {
+pub(super) fn described(part: &impl Description) -> Result<Group, EncodeError> {
     let mut group = Group::default();
     encode_fields(&mut group, part)?;
     Ok(group)

@@ -11,6 +11,7 @@ use hdf5_sys::{h5, h5a, h5d, h5e, h5f, h5g, h5i::hid_t, h5p, h5s, h5t};
 
 use super::super::error::WriteError;
 use super::super::tree::{Array, Data};
+use super::chunks::{Source, chunks};
 
 #[link(name = "hdf5_hl", kind = "static")]
 unsafe extern "C" {
@@ -145,8 +146,14 @@ impl Handle {
         }
     }
 
-    /// A new dataset in this file or group, with its values.
-    pub(super) fn create_dataset(&self, name: &str, array: &Array, storage: &Storage) -> Result<Handle, WriteError> {
+    /// A new dataset in this file or group, with its values; its chunks come from the source.
+    pub(super) fn create_dataset(
+        &self,
+        name: &str,
+        array: &Array,
+        storage: &Storage,
+        source: Source<'_>,
+    ) -> Result<Handle, WriteError> {
         let (path, c_name) = (format!("{}/{name}", self.path), c_name(name)?);
         let element = Element::of(&array.data, &path)?;
         let space = space(&array.shape, &path)?;
@@ -163,12 +170,45 @@ impl Handle {
                 h5p::H5P_DEFAULT,
             );
             let dataset = handle(dataset, h5d::H5Dclose, "H5Dcreate", &path)?;
+            if let Some(shape) = &storage.chunk {
+                dataset.write_chunks(&element, shape, storage.nan_fill, source)?;
+                return Ok(dataset);
+            }
             let all = h5s::H5S_ALL;
             let status =
                 h5d::H5Dwrite(dataset.id, element.kind.id, all, all, h5p::H5P_DEFAULT, element.bytes.as_ptr().cast());
             done(status, "H5Dwrite", &path)?;
             Ok(dataset)
         }
+    }
+
+    /// Writes the values of this dataset as chunks that are encoded already.
+    fn write_chunks(
+        &self,
+        element: &Element,
+        shape: &[usize],
+        nan_fill: bool,
+        source: Source<'_>,
+    ) -> Result<(), WriteError> {
+        let fill = if nan_fill { f64::NAN.to_le_bytes().to_vec() } else { vec![0; element.width] };
+        let encoded = chunks(source, &self.path, &element.bytes, &fill, shape);
+        for chunk in encoded.ok_or_else(|| refused("other chunks than these", &self.path))? {
+            let mut offset = vec![0_u64; shape.len()];
+            offset[0] = chunk.first_row;
+            // SAFETY: `self` is an open chunked dataset, `offset` has an entry for each axis, the buffer its length.
+            let status = unsafe {
+                h5d::H5Dwrite_chunk(
+                    self.id,
+                    h5p::H5P_DEFAULT,
+                    0,
+                    offset.as_ptr(),
+                    chunk.bytes.len(),
+                    chunk.bytes.as_ptr().cast(),
+                )
+            };
+            done(status, "H5Dwrite_chunk", &self.path)?;
+        }
+        Ok(())
     }
 
     /// A new attribute of this object.
@@ -242,6 +282,7 @@ fn creation_list(storage: &Storage, path: &str) -> Result<Handle, WriteError> {
 struct Element {
     kind: Handle,
     bytes: Vec<u8>,
+    width: usize,
 }
 
 impl Element {
@@ -262,11 +303,12 @@ impl Element {
             Data::F64(_) => *h5t::H5T_IEEE_F64LE,
             Data::Text(_) | Data::Other(_) => return Err(refused("a type without values", path)),
         };
-        let mut bytes = Vec::new();
+        let mut bytes = Vec::with_capacity(data.len() * 8);
         data.for_each_byte_block(|block| bytes.extend_from_slice(block));
         // SAFETY: a copy of an open type.
         let kind = handle(unsafe { h5t::H5Tcopy(id) }, h5t::H5Tclose, "H5Tcopy", path)?;
-        Ok(Self { kind, bytes })
+        let width = bytes.len() / data.len().max(1);
+        Ok(Self { kind, bytes, width })
     }
 
     /// Fixed-length UTF-8, padded with NUL to the longest text; at least one byte, because HDF5 has no empty type.
@@ -282,7 +324,7 @@ impl Element {
             done(h5t::H5Tset_size(kind.id, size), "H5Tset_size", path)?;
             done(h5t::H5Tset_strpad(kind.id, h5t::H5T_str_t::H5T_STR_NULLPAD), "H5Tset_strpad", path)?;
             done(h5t::H5Tset_cset(kind.id, h5t::H5T_cset_t::H5T_CSET_UTF8), "H5Tset_cset", path)?;
-            Ok(Self { kind, bytes })
+            Ok(Self { kind, bytes, width: size })
         }
     }
 }

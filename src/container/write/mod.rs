@@ -3,6 +3,7 @@
 //! The file is built in memory and reaches the disk through [`replace`](super::replace) like every other output: a full
 //! disk is then an ordinary error, and the same tree gives the same bytes wherever they go.
 
+pub(super) mod chunks;
 mod library;
 
 use std::collections::BTreeMap;
@@ -10,6 +11,7 @@ use std::collections::BTreeMap;
 use super::error::WriteError;
 use super::layout::name;
 use super::tree::{Array, Attributes, Data, Dataset, Group};
+use chunks::Source;
 use library::{Handle, Storage, exclusively, memory_file};
 
 /// Bytes of a chunk before compression, about.
@@ -19,20 +21,20 @@ const CHUNK_BYTES: usize = 1 << 20;
 ///
 /// # Errors
 /// [`WriteError::Library`] when libhdf5 refuses something.
-pub(super) fn to_bytes(root: &Group) -> Result<Vec<u8>, WriteError> {
+pub(super) fn to_bytes(root: &Group, source: Source<'_>) -> Result<Vec<u8>, WriteError> {
     exclusively(|| {
         let file = memory_file()?;
-        write_group(&file, root)?;
+        write_group(&file, root, source)?;
         file.image()
     })
 }
 
-fn write_group(target: &Handle, group: &Group) -> Result<(), WriteError> {
+fn write_group(target: &Handle, group: &Group, source: Source<'_>) -> Result<(), WriteError> {
     write_attributes(target, &group.attributes)?;
     // Ordered, because the library writes an object when it is closed: any order, but the same every time.
     let mut datasets = BTreeMap::new();
     for (name, dataset) in &group.datasets {
-        datasets.insert(name.as_str(), write_dataset(target, group, name, dataset)?);
+        datasets.insert(name.as_str(), write_dataset(target, group, name, dataset, source)?);
     }
     for (name, dataset) in &group.datasets {
         for (axis, scale) in (0_u32..).zip(&dataset.axes) {
@@ -43,15 +45,21 @@ fn write_group(target: &Handle, group: &Group) -> Result<(), WriteError> {
     }
     drop(datasets);
     for (name, child) in &group.groups {
-        write_group(&target.create_group(name)?, child)?;
+        write_group(&target.create_group(name)?, child, source)?;
     }
     Ok(())
 }
 
-fn write_dataset(target: &Handle, group: &Group, name: &str, dataset: &Dataset) -> Result<Handle, WriteError> {
+fn write_dataset(
+    target: &Handle,
+    group: &Group,
+    name: &str,
+    dataset: &Dataset,
+    source: Source<'_>,
+) -> Result<Handle, WriteError> {
     let nan_fill = matches!(dataset.array.data, Data::F64(_)) && !dataset.is_scale && !is_coordinate(group, name);
     let storage = Storage { chunk: chunk(&dataset.array), nan_fill };
-    let written = target.create_dataset(name, &dataset.array, &storage)?;
+    let written = target.create_dataset(name, &dataset.array, &storage, source)?;
     if dataset.is_scale {
         written.make_scale(name)?;
     }
