@@ -322,6 +322,8 @@ pub const FAULTS: &[Fault] = &[
     d("flag.value-not-measured", "by-design", |d| density(d).flags[[0, 0]] = Flag::NotMeasuredByDesign.bit()),
     d("flag.value-not-measured", "not-measured", |d| density(d).flags[[0, 0]] = Flag::NotMeasured.bit()),
 
+    d("flag.no-value", "all-below-detection", |d| density(d).flags.fill(Flag::BelowDetection.bit())),
+
     d("uncertainty.missing", "none", |d| {
         density(d).uncertainty = Uncertainty::default();
     }),

@@ -183,3 +183,27 @@ fn what_cannot_be_reduced_reads_as_a_sentence() {
     let text = error.to_string();
     assert!(text.ends_with("none of its 2 rows has a known geometry and a usable value at any wavelength"), "{text}");
 }
+
+/// A factor that is bright everywhere, and below detection in most rows at 520 nm.
+#[test]
+fn the_default_band_stops_where_most_rows_have_no_value() {
+    let nm: Vec<f64> = (0..5).map(|k| 480.0 + 10.0 * f64::from(k)).collect();
+    let mut scan = measurement("scan", QuantityKind::RadianceFactor, Role::Sample, &nm, Array2::from_elem((9, 5), 0.5));
+    for row in 0..6 {
+        scan.values[(row, 4)] = f64::NAN;
+        scan.flags[(row, 4)] = Flag::BelowDetection.bit();
+    }
+    scan.quantity.reference = Reference::SameGeometry;
+    let document = Document { measurements: vec![scan], ..Document::default() };
+    let reduced = reduce(&document, &document.measurements[0], Reduction::Auto).unwrap();
+    assert_eq!((reduced.reduction.as_str(), reduced.left_out), ("band:480-510", 0));
+}
+
+#[test]
+fn one_wavelength_is_fitted_as_it_is() {
+    let scan =
+        measurement("scan", QuantityKind::RadianceFactor, Role::Sample, &[550.0], Array2::from_elem((9, 1), 0.5));
+    let document = Document { measurements: vec![scan], ..Document::default() };
+    let reduced = reduce(&document, &document.measurements[0], Reduction::Auto).unwrap();
+    assert_eq!(reduced.reduction, "none");
+}

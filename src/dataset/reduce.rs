@@ -180,7 +180,11 @@ pub fn reduce(document: &Document, measurement: &Measurement, reduction: Reducti
                 reduction: reduction.to_string(),
             }),
         },
-        EmissionAxis::Wavelengths(_) if reduction == Reduction::None => keep_columns(measurement, "none".to_owned()),
+        EmissionAxis::Wavelengths(axis)
+            if reduction == Reduction::None || (reduction == Reduction::Auto && axis.nm.len() == 1) =>
+        {
+            keep_columns(measurement, "none".to_owned())
+        }
         EmissionAxis::Wavelengths(axis) => WeightedSum::new(document, measurement, &axis.nm, reduction)?.reduced(),
     }
 }

@@ -104,7 +104,7 @@ fn undeclared(place: Place) -> ImportError {
         place,
         "signed angles without a declared sign convention",
         "`# angles: signed, mirror-at-equal` (retro at theta_v = -theta_i) or `# angles: signed, retro-at-equal`",
-        "declare which (on the command line: `--angles signed,mirror-at-equal`)",
+        "declare which at the top of the file (to `bbrf import` also by `--angles signed,mirror-at-equal`)",
     ))
 }
 

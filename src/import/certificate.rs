@@ -29,6 +29,9 @@ impl Certificate {
     }
 }
 
+/// Largest certified factor that is taken.
+const HIGHEST_FACTOR: f64 = 1.1;
+
 /// Reads the certificate that the settings state.
 ///
 /// # Errors
@@ -52,7 +55,8 @@ pub(super) fn read(plan: &Plan, sample: &Measurement, notes: &mut Notes) -> Resu
         notes.unfilled("white_references/white-reference/certified_relative_uncertainty");
     }
     if let Some(number) = value(text) {
-        if number <= 0.0 {
+        // No diffuser reflects more than all; the best reach 1.02 in some geometries. 99 is a percentage.
+        if !(number > 0.0 && number <= HIGHEST_FACTOR) {
             return Err(refused(&plan.place, text));
         }
         reference.certified_factor = vec![number];
@@ -85,8 +89,8 @@ fn refused(place: &Place, text: &str) -> ImportError {
     ImportError::Call(fault(
         place.clone(),
         format!("{} as the certified factor", quoted(text)),
-        "a number greater than zero, or the name of a file of two columns (nm, factor)",
-        "correct it",
+        "a factor of about 1 (more than 0, at most 1.1), or the name of a file of two columns (nm, factor)",
+        "correct it; divide a percentage by 100",
     ))
 }
 
@@ -103,7 +107,7 @@ fn read_file(plan: &Plan, name: &str, notes: &mut Notes) -> Result<Record, Impor
     let source = Source::read(&path, &path.display().to_string())?;
     let options = Options { allow_partial_grid: true, ..Options::default() };
     let record = columns::parse(&source, &options)?.records.into_iter().next();
-    let record = record.filter(|record| record.values.iter().all(|value| *value > 0.0));
+    let record = record.filter(|record| record.values.iter().all(|value| *value > 0.0 && *value <= HIGHEST_FACTOR));
     let mut input = source.input.clone();
     input.dialect = "certificate, columns".to_owned();
     input.records = 1;

@@ -204,6 +204,14 @@ impl Reader<'_> {
     /// Wavelengths ascend; where most of them have one step, all have.
     fn check_grid(&self, rows: &[Row]) -> Result<(), ImportError> {
         let step = usual_step(rows);
+        if rows.len() > 1 && rows.windows(2).all(|pair| pair[1].nm < pair[0].nm) {
+            return Err(ImportError::Malformed(fault(
+                self.source.at_line(rows[1].line),
+                format!("wavelengths that descend from {} nm", rows[0].nm),
+                "ascending wavelengths",
+                "turn the order of the rows round",
+            )));
+        }
         for pair in rows.windows(2) {
             let found = pair[1].nm - pair[0].nm;
             let departs = step.is_some_and(|step| (found - step).abs() > 0.2 * step);

@@ -4,6 +4,7 @@
 use std::str::FromStr;
 
 use super::angles::Angles;
+use super::details::{self, Detail};
 use super::error::{ImportError, fault, quoted};
 use super::number::value;
 use crate::dataset::Place;
@@ -66,6 +67,8 @@ pub struct Settings {
     pub time_zone: Option<String>,
     /// True when the numbers were computed and not measured.
     pub simulated: Option<bool>,
+    /// Particulars by the names of the document's fields, as `instrument.distance-mm`.
+    pub details: Vec<Detail>,
 }
 
 /// Every key, in the spelling of the messages; `_` may stand for `-` and the other way round.
@@ -153,10 +156,16 @@ impl Settings {
 
     /// Takes a key from a file; the same as [`Settings::set`] with the message.
     pub(crate) fn take(&mut self, key: &str, text: &str, place: Place) -> Result<(), ImportError> {
+        let name = canonical(key);
+        if details::is_detail(&name) {
+            self.details.push(Detail { key: name, text: text.trim().to_owned(), place });
+            return Ok(());
+        }
         self.set(key, text).map_err(|why| {
             let (found, expected) = match why {
                 KeyFault::Unknown => {
-                    (format!("the unknown key {}", quoted(key)), format!("one of: {}", KEYS.join(", ")))
+                    let parts = details::PARTS.map(|part| format!("{part}.FIELD")).join(", ");
+                    (format!("the unknown key {}", quoted(key)), format!("one of: {}, {parts}", KEYS.join(", ")))
                 }
                 KeyFault::Value(expected) => (format!("{} as the value of {}", quoted(text), quoted(key)), expected),
             };
@@ -282,6 +291,8 @@ impl Settings {
             time_zone,
             simulated
         );
+        // What is stated later goes before.
+        merged.details.extend(self.details);
         merged
     }
 }
@@ -330,6 +341,6 @@ pub(crate) fn band(text: &str) -> Result<Band, KeyFault> {
 pub(crate) fn key_line(text: &str) -> Option<(&str, &str)> {
     let (key, value) = text.trim().strip_prefix('#')?.split_once(':')?;
     let key = key.trim();
-    let plain = !key.is_empty() && key.chars().all(|c| c.is_ascii_alphanumeric() || matches!(c, '-' | '_'));
+    let plain = !key.is_empty() && key.chars().all(|c| c.is_ascii_alphanumeric() || matches!(c, '-' | '_' | '.'));
     plain.then_some((key, value.trim()))
 }

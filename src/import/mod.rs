@@ -24,6 +24,7 @@
 mod angles;
 mod certificate;
 mod columns;
+mod details;
 mod dialect;
 mod error;
 mod factor;

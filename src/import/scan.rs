@@ -1,6 +1,7 @@
 //! From a plan to a document: raw measurements by role, lights, and the factor where there is a white reference.
 
 use super::angles::{Angles, check_habit, coverage};
+use super::details;
 use super::error::{ImportError, fault};
 use super::plan::{Entry, Plan, first_record};
 use super::receipt::{Notes, listed};
@@ -48,6 +49,7 @@ pub(super) fn assemble(mut plan: Plan, options: &Options, notes: &mut Notes) -> 
         measurements.extend(means);
     }
     attach(&mut document, measurements, &plan, notes);
+    details::fill(&mut document, &plan.settings.details)?;
     Ok(document)
 }
 

@@ -47,6 +47,14 @@ impl Source {
                 "split it into several files",
             )));
         }
+        if bytes.starts_with(b"\x89HDF\r\n\x1a\n") {
+            return Err(ImportError::Malformed(fault(
+                Place::file(name),
+                "an HDF5 file",
+                "a text of an instrument, a table or a manifest",
+                "if it is a .bbrf file it is imported already: see `bbrf info`",
+            )));
+        }
         let digest = Sha256::digest(&bytes);
         let sha256 = digest.iter().map(|byte| format!("{byte:02x}")).collect();
         let input =

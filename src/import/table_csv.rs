@@ -40,6 +40,7 @@ use std::collections::BTreeMap;
 use ndarray::Array2;
 
 use super::angles::{Angles, check_habit};
+use super::details;
 use super::error::{ImportError, fault, fault_of, quoted};
 use super::keys::Settings;
 use super::manifest::note_overridden;
@@ -109,7 +110,24 @@ pub(super) fn document(source: &Source, options: &Options, notes: &mut Notes) ->
     notes.input(input);
     table.check_angles(source, &settings, notes)?;
     let measurement = table.measurement(source, &settings, rows.has("sigma"))?;
-    Ok(finish(measurement, &settings, notes))
+    note_percent(source, &measurement, notes);
+    let mut document = finish(measurement, &settings, notes);
+    details::fill(&mut document, &settings.details)?;
+    Ok(document)
+}
+
+/// A fluorescent sheet radiates a few times what the perfect diffuser does, not tens of times.
+fn note_percent(source: &Source, measurement: &Measurement, notes: &mut Notes) {
+    const IMPLAUSIBLE: f64 = 10.0;
+    let mut values: Vec<f64> = measurement.values.iter().copied().filter(|value| value.is_finite()).collect();
+    values.sort_by(f64::total_cmp);
+    if let Some(middle) = values.get(values.len() / 2).filter(|middle| **middle > IMPLAUSIBLE)
+        && measurement.quantity.kind.is_factor()
+    {
+        let text =
+            format!("half of the factors are above {middle}, so many times the perfect diffuser: is it per cent?");
+        notes.notice(source.at_line(1), text);
+    }
 }
 
 fn finish(mut measurement: Measurement, settings: &Settings, notes: &mut Notes) -> Document {

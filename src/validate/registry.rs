@@ -248,6 +248,10 @@ rules! {
         "A value and the statement that there is none exclude each other.", "0.31 with not-measured-by-design",
         "Store NaN, or flag the value as interpolated.";
 
+    "BB0505" "flag.no-value" Warning flags::no_value,
+        "A measurement without one usable value says nothing; often its roles or its reference are exchanged.",
+        "white and dark exchanged, so that every quotient is missing", "Check which file has which role, and import again.";
+
     "BB0601" "uncertainty.missing" Warning uncertainty::missing,
         "A value without uncertainty can neither be weighted nor judged.", "no `value_u`",
         "Repeat readings, or take the uncertainty from the data sheet.";

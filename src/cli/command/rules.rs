@@ -19,7 +19,7 @@ pub(crate) struct Arguments {
 /// Say what a rule checks and why.
 #[derive(Debug, clap::Args)]
 pub(crate) struct ExplainArguments {
-    /// Id or alias of the rule, as in geometry.polar-range or BB0401
+    /// Id or alias of the rule, or a group, as in geometry.polar-range, BB0401 or geometry
     rule: String,
     /// Print JSON
     #[arg(long)]
@@ -65,6 +65,17 @@ pub(crate) fn run(arguments: &Arguments) -> CommandResult {
 }
 
 pub(crate) fn explain(arguments: &ExplainArguments) -> CommandResult {
+    let group: Vec<&Rule> = RULES.iter().filter(|rule| rule.group() == arguments.rule).collect();
+    if !group.is_empty() {
+        let line =
+            |rule: &&Rule| format!("{}  {:7}  {}: {}", rule.alias, rule.severity.name(), rule.id, rule.rationale);
+        if arguments.json {
+            print_json("bbrf:rules:1", &RulesResult { rules: group.into_iter().map(RuleText::from).collect() })?;
+        } else {
+            print_text(&group.iter().map(line).collect::<Vec<_>>().join("\n"))?;
+        }
+        return Ok(Outcome::Done);
+    }
     let rule = rule(&arguments.rule)
         .ok_or_else(|| miette!(help = "bbrf rules lists them", "{}", UnknownRule(arguments.rule.clone())))?;
     if arguments.json {

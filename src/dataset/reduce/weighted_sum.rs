@@ -11,6 +11,9 @@ const BAND_SHARE_OF_PEAK: f64 = 0.1;
 /// A wavelength that is unusable in some rows is left out of both sums for all rows if it carries at most this share
 /// of the signal; otherwise the rows are left out.
 const NEGLIGIBLE_SHARE: f64 = 1e-3;
+/// The default band ends where more than this share of the rows has no usable value: each wavelength that a row lacks
+/// costs the row.
+const MOST_MISSING: f64 = 0.1;
 
 /// A weighted sum over wavelengths, the same wavelengths for every row.
 pub(super) struct WeightedSum<'a> {
@@ -61,6 +64,7 @@ impl<'a> WeightedSum<'a> {
         });
         let band = match (reduction, band) {
             (Reduction::Band(band), _) => band,
+            (Reduction::Auto, Some(band)) if first == last => band,
             _ => Band { from_nm: nm[first], to_nm: nm[last] },
         };
         let inside = nm.iter().filter(|nm| band.contains(**nm)).count();
@@ -271,13 +275,23 @@ fn mean_signal(measurement: &Measurement, base: &Array2<f64>, column: usize) -> 
     values.iter().sum::<f64>() / values.len() as f64
 }
 
-/// The run of wavelengths around the peak of the mean signal in which it exceeds a tenth of the peak.
+/// The run of wavelengths around the peak of the mean signal in which it exceeds a tenth of the peak and nearly every
+/// row has a value.
 fn auto_band(measurement: &Measurement, nm: &[f64], base: &Array2<f64>, alive: &[usize]) -> Option<Band> {
     let signal = |column: usize| mean_signal(measurement, base, column) / step(nm, column);
     let means: Vec<f64> = alive.iter().map(|&column| signal(column)).collect();
-    let peak = (0..means.len()).max_by(|&a, &b| means[a].total_cmp(&means[b]))?;
-    let exceeds = |k: usize| means[k] > BAND_SHARE_OF_PEAK * means[peak];
+    let known = || (0..measurement.acquisitions.len()).filter(|&row| geometry_of(measurement, row).is_some());
+    let most = MOST_MISSING * known().count() as f64;
+    let lacks = |column: usize| known().filter(|&row| usable(measurement, row, column).is_nan()).count();
+    let whole: Vec<bool> = alive.iter().map(|&column| lacks(column) as f64 <= most).collect();
+    let any_whole = whole.contains(&true);
+    let candidates = (0..means.len()).filter(|&k| whole[k] || !any_whole);
+    let peak = candidates.max_by(|&a, &b| means[a].total_cmp(&means[b]))?;
+    let exceeds = |k: usize| means[k] > BAND_SHARE_OF_PEAK * means[peak] && whole[k] == any_whole;
     let first = (0..=peak).rev().take_while(|&k| k == peak || exceeds(k)).last()?;
     let last = (peak..means.len()).take_while(|&k| k == peak || exceeds(k)).last()?;
-    Some(Band { from_nm: nm[alive[first]], to_nm: nm[alive[last]] })
+    let (from, to) = (alive[first], alive[last]);
+    // A band has a width: that of the one sample, where it is one.
+    let margin = if from == to { step(nm, from) / 2.0 } else { 0.0 };
+    Some(Band { from_nm: nm[from] - margin, to_nm: nm[to] + margin })
 }

@@ -3,7 +3,7 @@
 use super::super::Context;
 use super::super::finding::Finder;
 use crate::container::layout::name;
-use crate::dataset::{Measurement, Place};
+use crate::dataset::{Measurement, Place, Role};
 use crate::quantity::{Flag, Flags};
 
 /// Reports the first value of each measurement that the rule objects to, with how many there are.
@@ -57,4 +57,18 @@ pub(in super::super) fn value_not_measured(context: &Context<'_>, found: &mut Fi
         let absent = [Flag::NotMeasured, Flag::NotMeasuredByDesign].into_iter().find(|flag| flags.contains(*flag));
         absent.filter(|_| !value.is_nan()).map(|flag| format!("{value} although `{}`", flag.name()))
     });
+}
+
+pub(in super::super) fn no_value(context: &Context<'_>, found: &mut Finder) {
+    // A dark signal may well lie on the floor throughout.
+    let lit = [Role::Sample, Role::White];
+    for (path, measurement) in context.measurements().filter(|(_, measurement)| lit.contains(&measurement.role)) {
+        let usable = |((row, column), value): ((usize, usize), &f64)| {
+            value.is_finite() && !measurement.flags_at(row, column).explains_absence()
+        };
+        if !measurement.values.is_empty() && !measurement.values.indexed_iter().any(usable) {
+            let what = format!("{} values, of which none is usable", measurement.values.len());
+            found.add(Place::path(format!("{path}/{}", name::VALUE)), what, "at least one usable value");
+        }
+    }
 }
