@@ -8,9 +8,11 @@
 //!
 //! It is taken of the tree that a document is written as, so a copy through another program has the same digest.
 
+use std::collections::BTreeMap;
 use std::fmt;
 use std::fmt::Write as _;
 
+use rayon::iter::{IntoParallelIterator, ParallelIterator};
 use sha2::{Digest as _, Sha256};
 
 use super::encode::{encode, encode_measurement};
@@ -58,20 +60,27 @@ pub fn measurement_digest(measurement: &Measurement) -> Result<String, EncodeErr
 
 /// The digest of a tree.
 pub(super) fn of_tree(root: &Group) -> Digest {
-    let mut lines = of_objects(root);
-    lines.sort();
-    let mut hash = Sha256::new();
-    for (path, digest) in lines {
-        hash.update(format!("{digest} {path}\n"));
-    }
-    Digest(format!("sha256:{}", hexadecimal(&hash.finalize())))
+    Digests::of(root).document
 }
 
-/// Path and digest of every object.
-pub(super) fn of_objects(root: &Group) -> Vec<(String, String)> {
-    let mut digests = Vec::new();
-    root.visit("", &mut |path, object| digests.push((path.to_owned(), of_object(object))));
-    digests
+/// The digests of every object of a tree, by path, and of all of them.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Digests {
+    pub(super) objects: BTreeMap<String, String>,
+    pub(super) document: Digest,
+}
+
+impl Digests {
+    /// Computes them, over all cores.
+    pub(super) fn of(root: &Group) -> Self {
+        let mut objects = Vec::new();
+        root.visit("", &mut |path, object| objects.push((path.to_owned(), object)));
+        let objects: BTreeMap<String, String> =
+            objects.into_par_iter().map(|(path, object)| (path, of_object(object))).collect();
+        let mut hash = Sha256::new();
+        objects.iter().for_each(|(path, digest)| hash.update(format!("{digest} {path}\n")));
+        Self { objects, document: Digest(format!("sha256:{}", hexadecimal(&hash.finalize()))) }
+    }
 }
 
 fn of_object(object: Object<'_>) -> String {
@@ -111,20 +120,26 @@ fn hexadecimal(bytes: &[u8]) -> String {
 
 /// Puts the digests into a tree: `sha256` on every object, `digest` on the root.
 #[cfg(feature = "write")]
-pub(super) fn sign(root: &mut Group) -> Digest {
-    let digest = of_tree(root);
-    sign_below(root);
-    root.attributes.insert(name::DIGEST.to_owned(), Array::text(digest.as_str()));
-    digest
+pub(super) fn sign(root: &mut Group) {
+    let digests = Digests::of(root);
+    sign_below(root, "", &digests);
 }
 
 #[cfg(feature = "write")]
-fn sign_below(group: &mut Group) {
-    let own = of_object(Object::Group(group));
-    group.attributes.insert(name::SHA256.to_owned(), Array::text(own));
-    for (_, dataset) in &mut group.datasets {
-        let own = of_object(Object::Dataset(dataset));
-        dataset.attributes.insert(name::SHA256.to_owned(), Array::text(own));
+fn sign_below(group: &mut Group, path: &str, digests: &Digests) {
+    group.attributes.extend(digests.attributes(if path.is_empty() { "/" } else { path }));
+    for (name, dataset) in &mut group.datasets {
+        dataset.attributes.extend(digests.attributes(&format!("{path}/{name}")));
     }
-    group.groups.iter_mut().for_each(|(_, group)| sign_below(group));
+    group.groups.iter_mut().for_each(|(name, child)| sign_below(child, &format!("{path}/{name}"), digests));
+}
+
+#[cfg(feature = "write")]
+impl Digests {
+    /// The attributes with which an object is signed; an object beside the standard has none.
+    pub(super) fn attributes(&self, path: &str) -> Vec<(String, Array)> {
+        let own = self.objects.get(path).map(|digest| (name::SHA256.to_owned(), Array::text(digest.as_str())));
+        let whole = (path == "/").then(|| (name::DIGEST.to_owned(), Array::text(self.document.as_str())));
+        own.into_iter().chain(whole).collect()
+    }
 }

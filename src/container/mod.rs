@@ -38,7 +38,7 @@ pub use open::{Inspection, Mismatch, Opened, inspect, open_to_rewrite, open_veri
 
 #[cfg(feature = "write")]
 pub use save::{
-    document_bytes, document_tree, rewrite, rewritten_bytes, sign_tree, tree_bytes, write_file, write_file_keeping,
+    document_bytes, document_tree, rewrite, sign_tree, tree_bytes, unchecked_bytes, write_file, write_file_keeping,
 };
 
 #[cfg(feature = "write")]

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use super::chunk_table::Chunks;
 use super::decode::decode;
-use super::digest::{Digest, of_objects, of_tree};
+use super::digest::{Digest, Digests};
 use super::encode::encode;
 use super::encoding::Encoded;
 use super::error::ReadError;
@@ -59,6 +59,13 @@ pub fn read_bytes(bytes: &[u8], limits: &Limits) -> Result<Opened, ReadError> {
     Ok(Opened { document, stored_digest, computed_digest, foreign, unknown, mismatched })
 }
 
+/// The tree of a document with its digests.
+#[derive(Debug)]
+pub(super) struct Canonical {
+    pub(super) tree: Group,
+    pub(super) digests: Digests,
+}
+
 /// A file looked at without asking that it is right.
 #[derive(Debug)]
 pub struct Inspection {
@@ -78,6 +85,8 @@ pub struct Inspection {
     pub chunks: Chunks,
     /// Encodings that the standard does not use and some reader cannot read.
     pub unusual: Vec<Encoded>,
+    /// The document as it would be written.
+    pub(super) canonical: Option<Canonical>,
     /// What differs from how the document would be written.
     pub mismatches: Vec<Mismatch>,
 }
@@ -91,11 +100,10 @@ pub fn inspect(bytes: &[u8], limits: &Limits) -> Result<Inspection, ReadError> {
     let document = decode(&tree);
     let stored_digest = stored_text(&tree.attributes, name::DIGEST);
     let canonical = document.as_ref().ok().and_then(|document| encode(document).ok());
-    let computed_digest = canonical.as_ref().map(of_tree);
-    let mismatches = match (&canonical, &computed_digest) {
-        (Some(canonical), Some(digest)) => mismatches(&tree, canonical, digest, stored_digest.as_deref()),
-        _ => Vec::new(),
-    };
+    let canonical = canonical.map(|tree| Canonical { digests: Digests::of(&tree), tree });
+    let computed_digest = canonical.as_ref().map(|canonical| canonical.digests.document.clone());
+    let mismatches =
+        canonical.as_ref().map_or_else(Vec::new, |canonical| mismatches(&tree, canonical, stored_digest.as_deref()));
     let foreign = Foreign::of(&tree);
     Ok(Inspection {
         unusual,
@@ -106,6 +114,7 @@ pub fn inspect(bytes: &[u8], limits: &Limits) -> Result<Inspection, ReadError> {
         document,
         stored_digest,
         computed_digest,
+        canonical,
         mismatches,
     })
 }
@@ -161,13 +170,13 @@ fn stored_text(attributes: &Attributes, name: &str) -> Option<String> {
 
 /// Everything that is not as it was written: digests that disagree, and content that differs from what the decoded
 /// document would be written as.
-fn mismatches(tree: &Group, canonical: &Group, computed: &Digest, stored: Option<&str>) -> Vec<Mismatch> {
-    let digests: BTreeMap<String, String> = of_objects(canonical).into_iter().collect();
+fn mismatches(tree: &Group, canonical: &Canonical, stored: Option<&str>) -> Vec<Mismatch> {
+    let Canonical { tree: canonical, digests: Digests { objects: digests, document: computed } } = canonical;
     let mut found = objects(tree);
     let mut wrong = Vec::new();
     canonical.visit("", &mut |path, expected| match found.remove(path) {
         None => wrong.push(Mismatch::Absent(path.to_owned())),
-        Some(object) => compare(path, object, expected, &digests, &mut wrong),
+        Some(object) => compare(path, object, expected, digests, &mut wrong),
     });
     match stored {
         None => wrong.push(Mismatch::Unsigned(format!("/@{}", name::DIGEST))),

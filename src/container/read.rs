@@ -137,7 +137,7 @@ impl Walk<'_> {
                 match type_of(kind) {
                     $(Some(Numeric::$variant) => {
                         self.spend(dataset.num_elements().map_err(failed)?, size_of::<$type>(), path)?;
-                        let array = dataset.read_array_uncached::<$type>().map_err(failed)?;
+                        let array = dataset.read_array_uncached_parallel::<$type>().map_err(failed)?;
                         Ok(Data::$variant(array.into_raw_vec_and_offset().0))
                     })+
                     None => Ok(Data::Other(format!("{kind:?}"))),

@@ -3,16 +3,16 @@
 use std::io::Write;
 use std::path::Path;
 
-use super::chunk_table::Chunks;
 use super::decode::decode;
-use super::digest::{Digest, of_tree, sign};
+use super::digest::{Digest, Digests, of_tree, sign};
 use super::encode::encode;
 use super::error::{EncodeError, WriteError};
 use super::foreign::Foreign;
+use super::open::Inspection;
 use super::replace::write_whole;
 use super::tree::Group;
 use super::write::chunks::Source;
-use super::write::to_bytes;
+use super::write::{Plan, to_bytes};
 use crate::dataset::Document;
 
 /// Writes a document to a file, whole or not at all, and returns its digest.
@@ -41,9 +41,9 @@ pub fn write_file_keeping(document: &Document, foreign: &Foreign, path: &Path) -
 /// As [`document_bytes`].
 pub fn rewrite(document: &Document, foreign: &Foreign) -> Result<Vec<u8>, WriteError> {
     let mut tree = encoded(document)?;
-    sign(&mut tree);
+    let digests = Digests::of(&tree);
     foreign.put_into(&mut tree);
-    to_bytes(&tree, Source::Values)
+    to_bytes(&tree, Plan { source: Source::Values, digests: Some(&digests) })
 }
 
 /// The bytes of the file that [`write_file`] writes, with the digest of the document.
@@ -51,20 +51,31 @@ pub fn rewrite(document: &Document, foreign: &Foreign) -> Result<Vec<u8>, WriteE
 /// # Errors
 /// [`WriteError`] when the document has no form in the standard or libhdf5 refuses.
 pub fn document_bytes(document: &Document) -> Result<(Vec<u8>, Digest), WriteError> {
-    let mut tree = encoded(document)?;
-    let digest = sign(&mut tree);
-    Ok((to_bytes(&tree, Source::Values)?, digest))
+    let tree = encoded(document)?;
+    let digests = Digests::of(&tree);
+    let bytes = to_bytes(&tree, Plan { source: Source::Values, digests: Some(&digests) })?;
+    Ok((bytes, digests.document))
 }
 
-/// The bytes that a document read from a file would be written as, around the chunks that the file has; `None` where it
-/// has others, or the document no form in the standard. Unlike [`document_bytes`] it asks nothing of the document, so
-/// that a faulty one can be compared with its file.
+/// The bytes of a document as it is, for tests: unlike [`document_bytes`] this asks nothing of the document. `None` where
+/// it has no form in the standard.
+#[doc(hidden)]
 #[must_use]
-pub fn rewritten_bytes(document: &Document, file: Option<(&[u8], &Chunks)>) -> Option<Vec<u8>> {
-    let mut tree = encode(document).ok()?;
-    sign(&mut tree);
-    let source = file.map_or(Source::Values, |(bytes, chunks)| Source::File(bytes, &chunks.0));
-    to_bytes(&tree, source).ok()
+pub fn unchecked_bytes(document: &Document) -> Option<Vec<u8>> {
+    let tree = encode(document).ok()?;
+    let digests = Digests::of(&tree);
+    to_bytes(&tree, Plan { source: Source::Values, digests: Some(&digests) }).ok()
+}
+
+impl Inspection {
+    /// The bytes that the document of this file would be written as, around the chunks that the file has; `None` where it
+    /// has others, or there is no document.
+    #[must_use]
+    pub fn rewritten(&self, bytes: &[u8]) -> Option<Vec<u8>> {
+        let canonical = self.canonical.as_ref()?;
+        let source = Source::File(bytes, &self.chunks.0);
+        to_bytes(&canonical.tree, Plan { source, digests: Some(&canonical.digests) }).ok()
+    }
 }
 
 /// The tree of a consistent document, known to read back as the same document.
@@ -99,5 +110,5 @@ pub fn sign_tree(tree: &mut Group) {
 /// [`WriteError::Library`] when libhdf5 refuses.
 #[doc(hidden)]
 pub fn tree_bytes(tree: &Group) -> Result<Vec<u8>, WriteError> {
-    to_bytes(tree, Source::Values)
+    to_bytes(tree, Plan { source: Source::Values, digests: None })
 }

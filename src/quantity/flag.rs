@@ -126,7 +126,8 @@ impl Flags {
     /// True where a flag says why there is no value.
     #[must_use]
     pub fn explains_absence(self) -> bool {
-        self.iter().any(Flag::explains_absence)
+        // The reasons are the lowest bits.
+        self.0 & ((Flag::Saturated.bit() << 1) - 1) != 0
     }
 
     /// Bits that the standard does not define.

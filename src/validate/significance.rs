@@ -36,16 +36,17 @@ pub(super) struct Worst<P> {
     pub(super) threshold: f64,
 }
 
-/// The worst of all z-scores, if it is beyond the threshold for their number.
+/// The worst of the z-scores, if it is beyond the threshold for so many comparisons. Scores that cannot be beyond it may
+/// be left out of the iterator, as long as they are counted.
 pub(super) fn worst<P>(
-    scores: impl IntoIterator<Item = (P, f64)>,
+    comparisons: usize,
+    scores: impl Iterator<Item = (P, f64)> + Clone,
     degrees_of_freedom: Option<f64>,
 ) -> Option<Worst<P>> {
-    let scores: Vec<(P, f64)> = scores.into_iter().filter(|(_, z)| z.is_finite()).collect();
-    let threshold = threshold(scores.len(), degrees_of_freedom);
-    let beyond = scores.iter().filter(|(_, z)| *z > threshold).count();
-    let (place, z) = scores.into_iter().max_by(|a, b| a.1.total_cmp(&b.1))?;
-    (z > threshold).then_some(Worst { place, z, beyond, threshold })
+    let threshold = threshold(comparisons, degrees_of_freedom);
+    let beyond = || scores.clone().filter(|(_, z)| z.is_finite() && *z > threshold);
+    let (place, z) = beyond().max_by(|a, b| a.1.total_cmp(&b.1))?;
+    Some(Worst { place, z, beyond: beyond().count(), threshold })
 }
 
 #[cfg(test)]
@@ -67,8 +68,8 @@ mod tests {
 
     #[test]
     fn nothing_compared_is_no_alarm() {
-        assert_eq!(worst(Vec::<((), f64)>::new(), None), None);
-        assert_eq!(worst([((), f64::NAN)], None), None);
-        assert!(worst([((), 9.0), ((), 0.1)], None).unwrap().beyond == 1);
+        assert_eq!(worst(0, std::iter::empty::<((), f64)>(), None), None);
+        assert_eq!(worst(1, [((), f64::NAN)].into_iter(), None), None);
+        assert!(worst(2, [((), 9.0), ((), 0.1)].into_iter(), None).unwrap().beyond == 1);
     }
 }

@@ -6,8 +6,10 @@
 pub(super) mod chunks;
 mod library;
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 
+use super::digest::Digests;
 use super::error::WriteError;
 use super::layout::name;
 use super::tree::{Array, Attributes, Data, Dataset, Group};
@@ -17,24 +19,33 @@ use library::{Handle, Storage, exclusively, memory_file};
 /// Bytes of a chunk before compression, about.
 const CHUNK_BYTES: usize = 1 << 20;
 
+/// What goes into a file beside the tree.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Plan<'a> {
+    /// Where chunks come from.
+    pub(super) source: Source<'a>,
+    /// The digests with which objects are signed that are not yet.
+    pub(super) digests: Option<&'a Digests>,
+}
+
 /// The bytes of the file that holds a tree.
 ///
 /// # Errors
 /// [`WriteError::Library`] when libhdf5 refuses something.
-pub(super) fn to_bytes(root: &Group, source: Source<'_>) -> Result<Vec<u8>, WriteError> {
+pub(super) fn to_bytes(root: &Group, plan: Plan<'_>) -> Result<Vec<u8>, WriteError> {
     exclusively(|| {
         let file = memory_file()?;
-        write_group(&file, root, source)?;
+        write_group(&file, root, "", plan)?;
         file.image()
     })
 }
 
-fn write_group(target: &Handle, group: &Group, source: Source<'_>) -> Result<(), WriteError> {
-    write_attributes(target, &group.attributes)?;
+fn write_group(target: &Handle, group: &Group, path: &str, plan: Plan<'_>) -> Result<(), WriteError> {
+    write_attributes(target, &plan.signed(&group.attributes, if path.is_empty() { "/" } else { path }))?;
     // Ordered, because the library writes an object when it is closed: any order, but the same every time.
     let mut datasets = BTreeMap::new();
     for (name, dataset) in &group.datasets {
-        datasets.insert(name.as_str(), write_dataset(target, group, name, dataset, source)?);
+        datasets.insert(name.as_str(), write_dataset(target, group, &format!("{path}/{name}"), name, dataset, plan)?);
     }
     for (name, dataset) in &group.datasets {
         for (axis, scale) in (0_u32..).zip(&dataset.axes) {
@@ -45,7 +56,7 @@ fn write_group(target: &Handle, group: &Group, source: Source<'_>) -> Result<(),
     }
     drop(datasets);
     for (name, child) in &group.groups {
-        write_group(&target.create_group(name)?, child, source)?;
+        write_group(&target.create_group(name)?, child, &format!("{path}/{name}"), plan)?;
     }
     Ok(())
 }
@@ -53,21 +64,32 @@ fn write_group(target: &Handle, group: &Group, source: Source<'_>) -> Result<(),
 fn write_dataset(
     target: &Handle,
     group: &Group,
+    path: &str,
     name: &str,
     dataset: &Dataset,
-    source: Source<'_>,
+    plan: Plan<'_>,
 ) -> Result<Handle, WriteError> {
     let nan_fill = matches!(dataset.array.data, Data::F64(_)) && !dataset.is_scale && !is_coordinate(group, name);
     let storage = Storage { chunk: chunk(&dataset.array), nan_fill };
-    let written = target.create_dataset(name, &dataset.array, &storage, source)?;
+    let written = target.create_dataset(name, &dataset.array, &storage, plan.source)?;
     if dataset.is_scale {
         written.make_scale(name)?;
     }
     if nan_fill {
         written.write_attribute("_FillValue", &Array::scalar(Data::F64(vec![f64::NAN])))?;
     }
-    write_attributes(&written, &dataset.attributes)?;
+    write_attributes(&written, &plan.signed(&dataset.attributes, path))?;
     Ok(written)
+}
+
+impl Plan<'_> {
+    /// The attributes of an object with its digest.
+    fn signed<'b>(&self, attributes: &'b Attributes, path: &str) -> Cow<'b, Attributes> {
+        let Some(digests) = self.digests else { return Cow::Borrowed(attributes) };
+        let mut signed = attributes.clone();
+        signed.extend(digests.attributes(path));
+        Cow::Owned(signed)
+    }
 }
 
 fn write_attributes(target: &Handle, attributes: &Attributes) -> Result<(), WriteError> {

@@ -7,8 +7,6 @@
 use super::super::Context;
 use super::super::finding::Finder;
 #[cfg(feature = "write")]
-use crate::container::rewritten_bytes;
-#[cfg(feature = "write")]
 use crate::dataset::Place;
 
 /// One byte in so many may differ. A file of the right length that differs in more was laid out by another writer.
@@ -18,8 +16,7 @@ const ONE_IN: usize = 20;
 /// Says nothing of a file of another length: another program wrote it.
 #[cfg(feature = "write")]
 pub(in super::super) fn written(context: &Context<'_>, found: &mut Finder) {
-    let chunks = Some((context.bytes, &context.inspection.chunks));
-    let Some(expected) = context.document().and_then(|document| rewritten_bytes(document, chunks)) else { return };
+    let Some(expected) = context.inspection.rewritten(context.bytes) else { return };
     if expected.len() != context.bytes.len() {
         return;
     }

@@ -30,8 +30,10 @@ fn each(
 type Objection = ((usize, usize), String);
 
 fn all(measurement: &Measurement, objects: &impl Fn(f64, Flags) -> Option<String>) -> Vec<Objection> {
-    let values = measurement.values.indexed_iter();
-    values.filter_map(|(at, value)| objects(*value, measurement.flags_at(at.0, at.1)).map(|what| (at, what))).collect()
+    let columns = measurement.emission.len().max(1);
+    let cells = measurement.values.iter().zip(&measurement.flags).enumerate();
+    let objecting = cells.filter_map(|(k, (value, flags))| objects(*value, Flags(*flags)).map(|what| (k, what)));
+    objecting.map(|(k, what)| ((k / columns, k % columns), what)).collect()
 }
 
 pub(in super::super) fn unknown_bits(context: &Context<'_>, found: &mut Finder) {
@@ -63,10 +65,8 @@ pub(in super::super) fn no_value(context: &Context<'_>, found: &mut Finder) {
     // A dark signal may well lie on the floor throughout.
     let lit = [Role::Sample, Role::White];
     for (path, measurement) in context.measurements().filter(|(_, measurement)| lit.contains(&measurement.role)) {
-        let usable = |((row, column), value): ((usize, usize), &f64)| {
-            value.is_finite() && !measurement.flags_at(row, column).explains_absence()
-        };
-        if !measurement.values.is_empty() && !measurement.values.indexed_iter().any(usable) {
+        let usable = |(value, flags): (&f64, &u16)| value.is_finite() && !Flags(*flags).explains_absence();
+        if !measurement.values.is_empty() && !measurement.values.iter().zip(&measurement.flags).any(usable) {
             let what = format!("{} values, of which none is usable", measurement.values.len());
             found.add(Place::path(format!("{path}/{}", name::VALUE)), what, "at least one usable value");
         }

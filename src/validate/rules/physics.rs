@@ -51,11 +51,20 @@ const ALL: [CorrelatedOver; 3] = [CorrelatedOver::Wavelengths, CorrelatedOver::A
 
 pub(in super::super) fn negative(context: &Context<'_>, found: &mut Finder) {
     for (path, measurement) in context.measurements() {
-        let score = |cell: Cell| {
+        let Some(standard) = &measurement.uncertainty.standard else { continue };
+        let judged = |((value, sigma), flags): &((&f64, &f64), &u16)| {
+            value.is_finite() && **sigma > 0.0 && sigma.is_finite() && **flags == 0
+        };
+        let comparisons = measurement.values.iter().zip(standard).zip(&measurement.flags).filter(judged).count();
+        // Only what is negative can be too negative.
+        let columns = measurement.emission.len().max(1);
+        let values = measurement.values.iter().enumerate();
+        let below = values.filter(|(_, value)| **value < 0.0).map(move |(k, _)| (k / columns, k % columns));
+        let scores = below.filter_map(|cell| {
             let (value, sigma) = usable(measurement, cell)?;
             Some((cell, -value / sigma.hypot(value * shared(measurement, cell.1, &ALL))))
-        };
-        if let Some(worst) = worst(cells(measurement).filter_map(score), degrees_of_freedom(measurement)) {
+        });
+        if let Some(worst) = worst(comparisons, scores, degrees_of_freedom(measurement)) {
             let value = measurement.values[worst.place];
             report(found, &path, worst.place, &worst, value.to_string(), "zero or more: no light is less than none");
         }
@@ -80,17 +89,20 @@ fn emission(measurement: &Measurement) -> Option<Vec<(f64, f64)>> {
 pub(in super::super) fn anti_stokes(context: &Context<'_>, found: &mut Finder) {
     for (path, measurement) in context.measurements().filter(|(_, m)| m.role == Role::Sample) {
         let Some(emission) = emission(measurement) else { continue };
-        let score = |cell: Cell| {
-            let ((excited, excitation_width), (emitted, emission_width)) =
-                (excitation(measurement, cell.0)?, *emission.get(cell.1)?);
+        let rows = (0..measurement.acquisitions.len()).filter_map(|row| Some((row, excitation(measurement, row)?)));
+        let beyond = rows.flat_map(|(row, (excited, excitation_width))| {
             // Triangles of that half width end a full width away from their centres.
-            if emitted >= excited - excitation_width - emission_width {
-                return None;
-            }
-            let (value, sigma) = usable(measurement, cell)?;
-            Some((cell, value / sigma.hypot(value * shared(measurement, cell.1, &ALL))))
-        };
-        if let Some(worst) = worst(cells(measurement).filter_map(score), degrees_of_freedom(measurement)) {
+            let below =
+                move |(_, (emitted, width)): &(usize, &(f64, f64))| *emitted < excited - excitation_width - width;
+            emission.iter().enumerate().filter(below).map(move |(column, _)| (row, column))
+        });
+        let scores: Vec<(Cell, f64)> = beyond
+            .filter_map(|cell| {
+                let (value, sigma) = usable(measurement, cell)?;
+                Some((cell, value / sigma.hypot(value * shared(measurement, cell.1, &ALL))))
+            })
+            .collect();
+        if let Some(worst) = worst(scores.len(), scores.iter().copied(), degrees_of_freedom(measurement)) {
             let excited = excitation(measurement, worst.place.0).map_or(f64::NAN, |excitation| excitation.0);
             let what =
                 format!("{} at {} nm under {excited} nm", measurement.values[worst.place], emission[worst.place.1].0);
@@ -142,7 +154,7 @@ fn exceeds_one(context: &Context<'_>, found: &mut Finder, power: impl Fn(Basis) 
         let sums: BTreeMap<Cell, (f64, f64)> = balance(measurement, power).into_iter().collect();
         let scores =
             sums.iter().filter(|(_, (_, sigma))| *sigma > 0.0).map(|(cell, (sum, sigma))| (*cell, (sum - 1.0) / sigma));
-        if let Some(worst) = worst(scores, degrees_of_freedom(measurement)) {
+        if let Some(worst) = worst(sums.len(), scores, degrees_of_freedom(measurement)) {
             let sum = sums.get(&worst.place).map_or(f64::NAN, |sum| sum.0);
             report(found, &path, worst.place, &worst, format!("{sum:.4} out of 1 over the row"), expected);
         }
@@ -218,7 +230,8 @@ fn report_pair(
     scores: Vec<((Cell, usize), f64)>,
     expected: &str,
 ) {
-    if let Some(worst) = worst(scores, degrees_of_freedom(measurement)) {
+    let scores = scores.iter().copied();
+    if let Some(worst) = worst(scores.len(), scores, degrees_of_freedom(measurement)) {
         let ((row, column), partner) = worst.place;
         let (a, b) = (measurement.values[(row, column)], measurement.values[(partner, column)]);
         report(found, path, (row, column), &worst, format!("{a} here and {b} in row {partner}"), expected);

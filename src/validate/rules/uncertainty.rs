@@ -4,7 +4,7 @@ use super::super::Context;
 use super::super::finding::Finder;
 use crate::container::layout::name;
 use crate::dataset::{Measurement, Place, Role};
-use crate::quantity::{ErrorDistribution, Finite, Statement};
+use crate::quantity::{ErrorDistribution, Finite, Flags, Statement};
 
 pub(in super::super) fn missing(context: &Context<'_>, found: &mut Finder) {
     for (path, measurement) in context.measurements().filter(|(_, measurement)| measurement.role == Role::Sample) {
@@ -96,10 +96,12 @@ fn each_value(
         if standard.dim() != measurement.values.dim() {
             continue;
         }
-        let first = measurement.values.indexed_iter().find_map(|((row, column), value)| {
-            let usable = value.is_finite() && !measurement.flags_at(row, column).explains_absence();
-            let what = if usable { objects(measurement, *value, standard[(row, column)]) } else { None };
-            what.map(|what| ((row, column), what))
+        let columns = measurement.emission.len().max(1);
+        let cells = measurement.values.iter().zip(standard).zip(&measurement.flags).enumerate();
+        let first = cells.into_iter().find_map(|(k, ((value, sigma), flags))| {
+            let usable = value.is_finite() && !Flags(*flags).explains_absence();
+            let what = if usable { objects(measurement, *value, *sigma) } else { None };
+            what.map(|what| ((k / columns, k % columns), what))
         });
         if let Some(((row, column), what)) = first {
             found.add(Place::path(format!("{path}/{}", name::VALUE_U)).at_index([row, column]), what, expected);
