@@ -32,11 +32,6 @@ fn degrees_of_freedom(measurement: &Measurement) -> Option<f64> {
     measurement.uncertainty.statement.degrees_of_freedom.map(Finite::get)
 }
 
-fn cells(measurement: &Measurement) -> impl Iterator<Item = Cell> {
-    let (rows, columns) = measurement.shape();
-    (0..rows).flat_map(move |row| (0..columns).map(move |column| (row, column)))
-}
-
 fn report(found: &mut Finder, path: &str, cell: Cell, worst: &Worst<impl Copy>, what: String, expected: &str) {
     let more = if worst.beyond > 1 {
         format!("; {} values are beyond {:.1}", worst.beyond, worst.threshold)
