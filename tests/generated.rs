@@ -62,6 +62,24 @@ fn the_worked_digest_is_the_digest() {
 }
 
 #[test]
+fn a_demand_without_its_rule_is_found() {
+    let wrong = [
+        "A file MUST be blue.",
+        "A file MUST be blue [BB9999].",
+        "It is so [BB0001]. A file MUST be blue, and\nso on. It is [not machine-checkable].",
+        "- A file MUST NOT be red [BB0010].",
+        "A file SHOULD be blue [BB0001].",
+    ];
+    for text in wrong {
+        assert_eq!(spec::text::faults(text).len(), 1, "{text}: {:?}", spec::text::faults(text));
+    }
+    let right =
+        "A file MUST be\nblue [BB0001, BB0010]. It SHOULD be bright [BB0010]; it MUST shine [not machine-checkable].";
+    assert_eq!(spec::text::faults(right), Vec::<String>::new());
+    assert!(spec::text::uncovered(right).iter().all(|rule| !rule.starts_with("BB0001")));
+}
+
+#[test]
 fn every_demand_names_its_rule_and_every_rule_is_in_the_text() {
     let text = std::fs::read_to_string(spec::folder().join("bbrf-1.0.md")).unwrap();
     let faults = spec::text::faults(&text);

@@ -1,6 +1,6 @@
 //! What the text of the specification says about rules.
 
-use bbrf::validate::RULES;
+use bbrf::validate::{RULES, Severity, rule};
 
 /// What stands in place of a rule where no program can check.
 const UNCHECKED: &str = "[not machine-checkable]";
@@ -37,6 +37,25 @@ fn named(sentence: &str) -> Vec<String> {
     starts.filter_map(alias).map(str::to_owned).collect()
 }
 
+/// The severities of the rules that a sentence names in brackets.
+fn severities(sentence: &str) -> Vec<Severity> {
+    let brackets = sentence.split('[').skip(1).filter_map(|rest| rest.split(']').next());
+    let rules = brackets.flat_map(named).filter_map(|alias| rule(&alias));
+    rules.map(|rule| rule.severity).collect()
+}
+
+/// What is wrong with the rules of a sentence: a MUST is checked by an error, a SHOULD alone by less.
+fn misgraded(sentence: &str) -> Option<&'static str> {
+    let severities = severities(sentence);
+    let has_error = severities.contains(&Severity::Error);
+    let must = ["MUST", "REQUIRED", "SHALL"].iter().any(|word| sentence.contains(word));
+    if must && !severities.is_empty() && !has_error {
+        return Some("a MUST without a rule of severity error");
+    }
+    (sentence.contains("SHOULD") && !must && !severities.is_empty() && severities.iter().all(|s| *s == Severity::Error))
+        .then_some("a SHOULD with errors alone")
+}
+
 /// Sentences that demand something without saying what checks it, and names of rules that are none.
 pub fn faults(text: &str) -> Vec<String> {
     let mut faults = Vec::new();
@@ -46,6 +65,9 @@ pub fn faults(text: &str) -> Vec<String> {
         // The sentence that explains the words themselves.
         if demands && !in_brackets && !sentence.contains("RFC 2119") {
             faults.push(format!("near line {line}: no rule and no mark: {sentence}"));
+        }
+        if let Some(why) = misgraded(&sentence).filter(|_| !sentence.contains(UNCHECKED)) {
+            faults.push(format!("near line {line}: {why}: {sentence}"));
         }
         for alias in named(&sentence).into_iter().filter(|alias| RULES.iter().all(|rule| rule.alias != alias)) {
             faults.push(format!("near line {line}: there is no rule {alias}"));
