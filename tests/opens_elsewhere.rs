@@ -10,8 +10,9 @@ mod documents;
 use std::path::Path;
 use std::process::Command;
 
+use bbrf::container::tree::{Array, Data, Dataset, Group};
 use bbrf::container::{open_verified, read_file, write_file};
-use bbrf::dataset::Measurement;
+use bbrf::dataset::{Extension, Measurement};
 use bbrf::quantity::Flag;
 use bbrf::validate::{rule, validate_bytes};
 
@@ -49,6 +50,14 @@ fn h5py_netcdf4_and_xarray_show_what_we_wrote() {
     let mut document = documents::small();
     // What netCDF changes on the way: empty axes, empty texts, arrays of one.
     document.measurements.push(documents::measurement("empty", &[], 0));
+    // Axes without scales, for which netCDF makes dimensions up.
+    let temperatures = Dataset::new(Array::vector(Data::F64(vec![23.0, 23.5, 24.0]))).with_text("units", "degC");
+    let content = Group {
+        attributes: [("firmware".to_owned(), Array::text("3.2"))].into(),
+        datasets: vec![("temperature".to_owned(), temperatures)],
+        groups: Vec::new(),
+    };
+    document.extensions.push(Extension { domain: documents::id("org.example.goniometer"), content });
     let digest = write_file(&document, &path).unwrap();
     let scan = document.measurement("scan").unwrap();
     std::fs::write(&json, expected(scan, document.title.as_ref().unwrap()).to_string()).unwrap();

@@ -1,9 +1,9 @@
 //! SHA-256 of the logical content: values and the attributes that the standard lists, whatever their encoding in a file.
 //!
 //! The digest of an object is SHA-256 over its kind (`group` or `dataset`), for a dataset its array, and its attributes
-//! in the order of their names, each as name and array. A text is its length in bytes (64 bit, little-endian) and its
+//! in the order of their names, each as name and array; without what other programs add and without descriptions. A text is its length in bytes (64 bit, little-endian) and its
 //! UTF-8 bytes; an array is its element type as a text, the number of its axes and their lengths (64 bit), its values
-//! (little-endian; NaN with its bits). The digest of a document is SHA-256 over the lines `DIGEST PATH\n` of all its
+//! (little-endian; NaN with its bits); in an attribute, an array of one value is a scalar. The digest of a document is SHA-256 over the lines `DIGEST PATH\n` of all its
 //! objects, ordered by path.
 //!
 //! It is taken of the tree that a document is written as, so a copy through another program has the same digest.
@@ -17,10 +17,12 @@ use sha2::{Digest as _, Sha256};
 
 use super::encode::{encode, encode_measurement};
 use super::error::EncodeError;
-use super::layout::is_outside_digest;
 #[cfg(feature = "write")]
 use super::layout::name;
-use super::tree::{Array, Group, Object};
+use super::layout::{is_description, is_outside_digest};
+#[cfg(feature = "write")]
+use super::tree::Array;
+use super::tree::{Data, Group, Object};
 use crate::dataset::{Document, Measurement};
 
 /// The digest of a document or of one of its parts.
@@ -63,6 +65,13 @@ pub(super) fn of_tree(root: &Group) -> Digest {
     Digests::of(root).document
 }
 
+/// The digest of a document from those of its objects, by path.
+pub(super) fn of_lines(objects: &BTreeMap<String, String>) -> Digest {
+    let mut hash = Sha256::new();
+    objects.iter().for_each(|(path, digest)| hash.update(format!("{digest} {path}\n")));
+    Digest(format!("sha256:{}", hexadecimal(&hash.finalize())))
+}
+
 /// The digests of every object of a tree, by path, and of all of them.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Digests {
@@ -77,9 +86,7 @@ impl Digests {
         root.visit("", &mut |path, object| objects.push((path.to_owned(), object)));
         let objects: BTreeMap<String, String> =
             objects.into_par_iter().map(|(path, object)| (path, of_object(object))).collect();
-        let mut hash = Sha256::new();
-        objects.iter().for_each(|(path, digest)| hash.update(format!("{digest} {path}\n")));
-        Self { objects, document: Digest(format!("sha256:{}", hexadecimal(&hash.finalize()))) }
+        Self { document: of_lines(&objects), objects }
     }
 }
 
@@ -89,21 +96,24 @@ fn of_object(object: Object<'_>) -> String {
         Object::Group(_) => text(&mut hash, "group"),
         Object::Dataset(dataset) => {
             text(&mut hash, "dataset");
-            array(&mut hash, &dataset.array);
+            array(&mut hash, &dataset.array.shape, &dataset.array.data);
         }
     }
-    for (name, value) in object.attributes().iter().filter(|(name, _)| !is_outside_digest(name)) {
+    let digested = |name: &str| !is_outside_digest(name) && !is_description(name);
+    for (name, value) in object.attributes().iter().filter(|(name, _)| digested(name)) {
         text(&mut hash, name);
-        array(&mut hash, value);
+        // netCDF makes an array of every number in an attribute.
+        let shape = if value.data.len() == 1 { &[][..] } else { &value.shape };
+        array(&mut hash, shape, &value.data);
     }
     hexadecimal(&hash.finalize())
 }
 
-fn array(hash: &mut Sha256, array: &Array) {
-    text(hash, array.data.type_name());
-    hash.update((array.shape.len() as u64).to_le_bytes());
-    array.shape.iter().for_each(|length| hash.update((*length as u64).to_le_bytes()));
-    array.data.for_each_byte_block(|block| hash.update(block));
+fn array(hash: &mut Sha256, shape: &[usize], data: &Data) {
+    text(hash, data.type_name());
+    hash.update((shape.len() as u64).to_le_bytes());
+    shape.iter().for_each(|length| hash.update((*length as u64).to_le_bytes()));
+    data.for_each_byte_block(|block| hash.update(block));
 }
 
 fn text(hash: &mut Sha256, text: &str) {

@@ -62,6 +62,18 @@ pub enum ReadError {
         /// The version.
         found: String,
     },
+    /// A later minor version put content into the file that this library cannot write with its digest.
+    #[error(
+        "{place}: holds content of a later version of the standard, which would be lost here ({}): write it with a \
+         newer bbrf",
+        if .unknown.is_empty() { "members of its receipts or steps".to_owned() } else { .unknown.join("; ") }
+    )]
+    Later {
+        /// Where.
+        place: Box<Place>,
+        /// Paths of what is not known.
+        unknown: Vec<String>,
+    },
     /// The parts of the document do not fit together.
     #[error("{place}: {source}")]
     Document {
@@ -102,6 +114,7 @@ impl ReadError {
             | Self::Missing { place, .. }
             | Self::Unexpected { place, .. }
             | Self::Version { place, .. }
+            | Self::Later { place, .. }
             | Self::Document { place, .. }
             | Self::Damaged { place, .. } => place,
         }
@@ -115,6 +128,7 @@ impl ReadError {
             | Self::Missing { place, .. }
             | Self::Unexpected { place, .. }
             | Self::Version { place, .. }
+            | Self::Later { place, .. }
             | Self::Document { place, .. }
             | Self::Damaged { place, .. } => place,
         }

@@ -170,6 +170,16 @@ pub fn is_outside_digest(attribute: &str) -> bool {
         || attribute == name::DIGEST
 }
 
+/// Attributes with words for people, and the versions that a file follows. They may be spelled otherwise, and belong to
+/// no digest: a better sentence, or a later version, leaves the content what it is.
+pub const DESCRIPTIONS: [&str; 3] = [name::CONVENTIONS, name::BBRF_VERSION, name::LONG_NAME];
+
+/// True for an attribute that describes content and is none.
+#[must_use]
+pub fn is_description(attribute: &str) -> bool {
+    DESCRIPTIONS.contains(&attribute)
+}
+
 /// What an entry of the table is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {

@@ -5,12 +5,12 @@ use std::path::Path;
 
 use super::chunk_table::Chunks;
 use super::decode::decode;
-use super::digest::{Digest, Digests};
+use super::digest::{Digest, Digests, of_lines};
 use super::encode::encode;
 use super::encoding::Encoded;
 use super::error::ReadError;
 use super::foreign::Foreign;
-use super::layout::name;
+use super::layout::{self, is_description, name};
 use super::limits::Limits;
 use super::read::{Read, from_bytes};
 use super::tree::{Array, Attributes, Group, Object};
@@ -148,17 +148,27 @@ impl std::fmt::Display for Mismatch {
 /// # Errors
 /// As [`read_file`]; and [`ReadError::Damaged`], naming what differs, where a digest is missing or does not agree.
 pub fn open_verified(path: &Path) -> Result<Document, ReadError> {
-    open_to_rewrite(path).map(|(document, _)| document)
+    verified(path).map(|opened| opened.document)
 }
 
 /// The same with what the file holds beside the standard, for who writes the document again.
 ///
 /// # Errors
-/// As [`open_verified`].
+/// As [`open_verified`]; and [`ReadError::Later`] where a later version of the standard put content into the file that
+/// would no longer be digested, or be lost.
 pub fn open_to_rewrite(path: &Path) -> Result<(Document, Foreign), ReadError> {
+    let opened = verified(path)?;
+    if opened.stored_digest.as_deref() == Some(opened.computed_digest.as_str()) {
+        return Ok((opened.document, opened.foreign));
+    }
+    let place = Box::new(Place::file(path.display().to_string()));
+    Err(ReadError::Later { place, unknown: opened.unknown })
+}
+
+fn verified(path: &Path) -> Result<Opened, ReadError> {
     let opened = read_file(path)?;
     if opened.mismatched.is_empty() {
-        return Ok((opened.document, opened.foreign));
+        return Ok(opened);
     }
     let place = Box::new(Place::file(path.display().to_string()));
     Err(ReadError::Damaged { place, mismatched: opened.mismatched })
@@ -172,18 +182,60 @@ fn stored_text(attributes: &Attributes, name: &str) -> Option<String> {
 /// document would be written as.
 fn mismatches(tree: &Group, canonical: &Canonical, stored: Option<&str>) -> Vec<Mismatch> {
     let Canonical { tree: canonical, digests: Digests { objects: digests, document: computed } } = canonical;
+    let later = Later::of(tree);
     let mut found = objects(tree);
     let mut wrong = Vec::new();
     canonical.visit("", &mut |path, expected| match found.remove(path) {
         None => wrong.push(Mismatch::Absent(path.to_owned())),
-        Some(object) => compare(path, object, expected, digests, &mut wrong),
+        Some(object) => compare(path, object, expected, (digests, &later), &mut wrong),
     });
+    wrong.extend(later.damaged(&found));
     match stored {
         None => wrong.push(Mismatch::Unsigned(format!("/@{}", name::DIGEST))),
-        Some(stored) if stored != computed.as_str() => wrong.push(Mismatch::Digest(format!("/@{}", name::DIGEST))),
+        Some(stored) if stored != computed.as_str() && !later.is_document(stored) => {
+            wrong.push(Mismatch::Digest(format!("/@{}", name::DIGEST)))
+        }
         Some(_) => {}
     }
     wrong
+}
+
+/// The digests of a file of a later minor version as it stands: what it adds to objects that are known is in their
+/// digests, and not in a document of this version. Empty for other files.
+struct Later {
+    stands: BTreeMap<String, String>,
+    signed: BTreeMap<String, String>,
+}
+
+impl Later {
+    fn of(tree: &Group) -> Self {
+        let stated = tree.attributes.get(name::BBRF_VERSION).and_then(Array::as_text).and_then(layout::parse_version);
+        let mut signed = BTreeMap::new();
+        if !stated.is_some_and(|(major, minor)| major == layout::MAJOR && minor > layout::MINOR) {
+            return Self { stands: BTreeMap::new(), signed };
+        }
+        tree.visit("", &mut |path, object| {
+            signed.extend(stored_text(object.attributes(), name::SHA256).map(|digest| (path.to_owned(), digest)));
+        });
+        Self { stands: Digests::of(tree).objects, signed }
+    }
+
+    fn is_object(&self, path: &str, stored: &str) -> bool {
+        self.stands.get(path).is_some_and(|digest| digest == stored)
+    }
+
+    fn is_document(&self, stored: &str) -> bool {
+        !self.signed.is_empty() && of_lines(&self.signed).as_str() == stored
+    }
+
+    /// Objects that only the later version knows, and that do not have their digest.
+    fn damaged(&self, unknown: &BTreeMap<String, Object<'_>>) -> Vec<Mismatch> {
+        let added = self.signed.iter().filter(|(path, _)| unknown.contains_key(path.as_str()));
+        added
+            .filter(|(path, stored)| !self.is_object(path, stored))
+            .map(|(path, _)| Mismatch::Digest(path.clone()))
+            .collect()
+    }
 }
 
 fn objects(tree: &Group) -> BTreeMap<String, Object<'_>> {
@@ -198,17 +250,17 @@ fn compare(
     path: &str,
     object: Object<'_>,
     expected: Object<'_>,
-    digests: &BTreeMap<String, String>,
+    (digests, later): (&BTreeMap<String, String>, &Later),
     wrong: &mut Vec<Mismatch>,
 ) {
     match stored_text(object.attributes(), name::SHA256) {
         None => wrong.push(Mismatch::Unsigned(path.to_owned())),
-        Some(stored) if digests.get(path) != Some(&stored) => {
+        Some(stored) if digests.get(path) != Some(&stored) && !later.is_object(path, &stored) => {
             wrong.push(Mismatch::Digest(path.to_owned()));
         }
         Some(_) => {}
     }
-    for (name, expected) in expected.attributes() {
+    for (name, expected) in expected.attributes().iter().filter(|(name, _)| !is_description(name)) {
         let same = object.attributes().get(name).is_some_and(|found| found.same_values(expected));
         if !same && !is_empty_text(object.attributes().get(name), expected) {
             wrong.push(Mismatch::Attribute(format!("{path}@{name}")));

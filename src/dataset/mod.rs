@@ -6,6 +6,7 @@
 //!
 //! *Invariant:* prediction, residual and reduction are defined here, once; whoever fits, validates or draws uses them.
 
+mod anonymise;
 mod calibration;
 mod conditions;
 mod direction_test;
@@ -24,6 +25,7 @@ mod sample;
 #[doc(hidden)]
 pub mod tree;
 
+pub use anonymise::{Anonymised, Suspect};
 pub use calibration::Calibration;
 pub use conditions::Conditions;
 pub use direction_test::DirectionTest;

@@ -1,9 +1,22 @@
 //! Every conversion between quantities, by name. Each may refuse: a conversion that needs what the source did not
 //! state has no answer.
+//!
+//! Every conversion multiplies values, uncertainties of values included; a [`Conversion`] is that number with the
+//! quantity that the products are. Relative uncertainties stay as they are.
+
+mod basis;
+mod bispectral;
+mod factor;
+
+pub use basis::to_basis;
+pub use bispectral::{
+    Cell, EmissionWidth, brrdf_from_density, density_from_brrdf, density_from_donaldson, donaldson_from_density,
+};
+pub use factor::{brdf_from_radiance_factor, radiance_factor_from_brdf, to_fixed_geometry, to_same_geometry};
 
 use super::angle::cos_deg;
 use super::direction::Geometry;
-use super::kind::Reference;
+use super::kind::{Part, Quantity, QuantityKind, Reference};
 
 /// Why a conversion has no answer.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -18,6 +31,89 @@ pub enum ConversionRefused {
     /// The reference was lit at grazing incidence, where it receives nothing.
     #[error("the reference was lit at 90 degrees, where a diffuser receives no light")]
     ReferenceUnlit,
+    /// The sample is lit at grazing incidence: a reference in its place receives nothing.
+    #[error("the sample is lit at 90 degrees, where a reference in its place receives no light")]
+    SampleUnlit,
+    /// The conversion starts from another quantity.
+    #[error("found the quantity `{found}`; this conversion takes {expected}")]
+    Kind {
+        /// What the values are.
+        found: QuantityKind,
+        /// What they have to be.
+        expected: &'static str,
+    },
+    /// The conversion holds for another part of the light.
+    #[error("found the part `{found}`; this conversion holds for `{expected}` only: separate the parts first")]
+    Part {
+        /// The part that the values hold.
+        found: Part,
+        /// The part that it holds for.
+        expected: Part,
+    },
+    /// The conversion holds for another reference.
+    #[error("found the reference `{found}`; this conversion holds for {expected}")]
+    Reference {
+        /// The reference of the values.
+        found: Reference,
+        /// The references that it holds for.
+        expected: &'static str,
+    },
+    /// The width of the bandpass is not stated, and the values contain it or are to contain it.
+    #[error(
+        "the emission bandpass is unstated: without its width a Donaldson matrix and a density cannot be converted"
+    )]
+    BandpassUnstated,
+    /// The width is no width.
+    #[error("the emission bandpass is {0} nm wide; expected a positive finite width")]
+    Width(f64),
+    /// On the diagonal of a Donaldson matrix stands reflected light.
+    #[error(
+        "the excitation of {excitation_nm} nm and the emission at {emission_nm} nm overlap: there the matrix holds \
+         reflected light, which is no density"
+    )]
+    Diagonal {
+        /// Centre of the excitation, nm.
+        excitation_nm: f64,
+        /// Centre of the emission, nm.
+        emission_nm: f64,
+    },
+    /// It is not stated what is counted.
+    #[error("the basis is unstated, so it is unknown whether energy or photons are counted; state it")]
+    BasisUnstated,
+    /// A wavelength is no wavelength.
+    #[error("a wavelength of {0} nm; expected a positive finite number")]
+    Wavelength(f64),
+}
+
+/// What a conversion does: every value, and every uncertainty in the unit of the values, times `factor` is of
+/// `quantity`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Conversion {
+    /// What the products are.
+    pub quantity: Quantity,
+    /// The number to multiply with, positive and finite.
+    pub factor: f64,
+}
+
+/// Refuses another quantity.
+fn expect_kind(quantity: &Quantity, kind: QuantityKind, expected: &'static str) -> Result<(), ConversionRefused> {
+    let found = quantity.kind;
+    if found == kind { Ok(()) } else { Err(ConversionRefused::Kind { found, expected }) }
+}
+
+/// Refuses another part.
+fn expect_part(quantity: &Quantity, expected: Part) -> Result<(), ConversionRefused> {
+    let found = quantity.part;
+    if found == expected { Ok(()) } else { Err(ConversionRefused::Part { found, expected }) }
+}
+
+/// Refuses another reference than one in the geometry of each value.
+fn expect_same_geometry(quantity: &Quantity) -> Result<(), ConversionRefused> {
+    match quantity.reference {
+        Reference::SameGeometry => Ok(()),
+        Reference::Unstated => Err(ConversionRefused::ReferenceUnstated),
+        found => Err(ConversionRefused::Reference { found, expected: "`same-geometry`; convert the reference first" }),
+    }
 }
 
 impl Reference {

@@ -18,7 +18,11 @@ mod unit;
 mod wavelength;
 
 pub use angle::{cos_deg, sin_deg};
-pub use convert::{ConversionRefused, Quotient, ratio_to_reference};
+pub use convert::{
+    Cell, Conversion, ConversionRefused, EmissionWidth, Quotient, brdf_from_radiance_factor, brrdf_from_density,
+    density_from_brrdf, density_from_donaldson, donaldson_from_density, radiance_factor_from_brdf, ratio_to_reference,
+    to_basis, to_fixed_geometry, to_same_geometry,
+};
 pub use direction::{Direction, DirectionError, Geometry, HalfAngles, SignHabit};
 pub use finite::{Finite, NotFinite};
 pub use flag::{Flag, Flags};

@@ -5,6 +5,7 @@ pub(crate) mod export;
 pub(crate) mod fit;
 pub(crate) mod import;
 pub(crate) mod info;
+pub(crate) mod migrate;
 pub(crate) mod report;
 pub(crate) mod rules;
 pub(crate) mod schema;

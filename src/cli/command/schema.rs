@@ -25,6 +25,7 @@ pub(crate) fn all() -> Vec<(&'static str, Schema)> {
         ("fit", schema_for!(super::fit::FitResult)),
         ("import", schema_for!(super::import::ImportResult<'static>)),
         ("info", schema_for!(info::InfoResult)),
+        ("migrate", schema_for!(super::migrate::MigrateResult)),
         ("report", schema_for!(super::report::ReportResult)),
         ("rules", schema_for!(rules::RulesResult)),
         ("validate", schema_for!(validate::ValidateResult)),

@@ -3,7 +3,7 @@
 use super::super::error::ReadError;
 use super::super::fields::{Description, decode_fields};
 use super::super::layout::{is_outside_digest, name};
-use super::super::tree::{Attributes, Dataset, Group};
+use super::super::tree::{Array, Attributes, Dataset, Group};
 use super::{At, attribute_number, dataset_text, parsed};
 use crate::dataset::{Extension, Id, Light, LightSpectrum, Provenance, WhiteReference};
 use crate::quantity::{Band, Bandpass, BandpassCorrection, EmissionAxis, Quantity, WavelengthAxis};
@@ -47,7 +47,8 @@ fn without_foreign(group: &Group) -> Group {
             .map(|(name, array)| (name.clone(), array.clone()))
             .collect()
     };
-    let datasets = group.datasets.iter().map(|(name, dataset)| {
+    let content = group.datasets.iter().filter(|(_, dataset)| !is_netcdf_dimension(dataset));
+    let datasets = content.map(|(name, dataset)| {
         (name.clone(), Dataset { attributes: own(&dataset.attributes), ..Dataset::new(dataset.array.clone()) })
     });
     Group {
@@ -55,6 +56,12 @@ fn without_foreign(group: &Group) -> Group {
         datasets: datasets.collect(),
         groups: group.groups.iter().map(|(name, group)| (name.clone(), without_foreign(group))).collect(),
     }
+}
+
+/// A dimension that netCDF made up for an axis without a scale.
+fn is_netcdf_dimension(dataset: &Dataset) -> bool {
+    let name = dataset.attributes.get("NAME").and_then(Array::as_text);
+    name.is_some_and(|name| name.starts_with("This is a netCDF dimension but not a netCDF variable"))
 }
 
 pub(super) fn provenance(at: &At<'_>) -> Result<Provenance, ReadError> {

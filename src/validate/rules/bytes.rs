@@ -7,15 +7,20 @@
 use super::super::Context;
 use super::super::finding::Finder;
 #[cfg(feature = "write")]
+use crate::container::layout;
+#[cfg(feature = "write")]
 use crate::dataset::Place;
 
 /// One byte in so many may differ. A file of the right length that differs in more was laid out by another writer.
 #[cfg(feature = "write")]
 const ONE_IN: usize = 20;
 
-/// Says nothing of a file of another length: another program wrote it.
+/// Says nothing of a file of another length or version: another program wrote it.
 #[cfg(feature = "write")]
 pub(in super::super) fn written(context: &Context<'_>, found: &mut Finder) {
+    if context.version() != Some((layout::MAJOR, layout::MINOR)) {
+        return;
+    }
     let Some(expected) = context.inspection.rewritten(context.bytes) else { return };
     if expected.len() != context.bytes.len() {
         return;

@@ -22,9 +22,8 @@ pub(in super::super) fn object(context: &Context<'_>, found: &mut Finder) {
 
 pub(in super::super) fn document(context: &Context<'_>, found: &mut Finder) {
     let (stored, computed) = (&context.inspection.stored_digest, &context.inspection.computed_digest);
-    if let (Some(stored), Some(computed)) = (stored, computed)
-        && stored != computed.as_str()
-    {
+    let differs = context.inspection.mismatches.iter().any(|m| matches!(m, Mismatch::Digest(path) if is_root(path)));
+    if let (Some(stored), Some(computed), true) = (stored, computed, differs) {
         found.add(Place::path(format!("/@{}", name::DIGEST)), computed.as_str(), stored.as_str());
     }
 }
