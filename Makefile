@@ -54,6 +54,7 @@ lint: $(CMAKE_READY) ## rustfmt, clippy and docs with warnings denied; the readi
 	$(CARGO) clippy --locked --package bbrf-capi -- -D warnings
 	RUSTDOCFLAGS='-D warnings' $(CARGO) doc --locked --no-deps
 	RUSTFLAGS='-D warnings' $(CARGO) check --locked --no-default-features --lib --target-dir target/no-write
+	RUSTFLAGS='-D warnings' $(CARGO) check --locked --no-default-features --package bbrf-capi --target-dir target/no-write
 
 $(VENV)/bench-ready: $(VENV)/ready benches/requirements.txt
 	$(VENV)/bin/pip install --quiet --disable-pip-version-check -r benches/requirements.txt

@@ -1,7 +1,9 @@
 /* The validator of bbrf files, for C and everything that calls C.
  *
  * Build it with `cargo build --release --package bbrf-capi`: target/release has libbbrf.so (libbbrf.dylib, bbrf.dll) and
- * libbbrf.a. No libhdf5 is needed. All functions may be called from several threads at once.
+ * libbbrf.a, which need no other library. Files are read in pure Rust: a damaged one neither crashes nor hangs the caller.
+ * With --no-default-features no C compiler is needed, and the one rule `structure.bytes` is not applied. All functions may
+ * be called from several threads at once.
  */
 #ifndef BBRF_H
 #define BBRF_H

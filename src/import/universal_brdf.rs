@@ -46,10 +46,10 @@ use table::Common;
 /// The extension that keeps what has no place in the document: datasets `metadata` and `data` with JSON.
 pub const DOMAIN: &str = "io.github.bird-project";
 
-/// True for a text that looks like one: an object of `metadata` and `data`.
+/// True for a text that looks like one: an object that speaks of a BRDF, or has its two members.
 pub(super) fn is_one(text: &str) -> bool {
-    let starts = text.trim_start_matches(['\u{feff}', ' ', '\n', '\t']).starts_with('{');
-    starts && ["\"data\"", "\"BRDF\"", "\"theta_i\""].iter().all(|name| text.contains(name))
+    let has = |name: &str| text.contains(name);
+    text.trim_start().starts_with('{') && (has("\"BRDF\"") || has("\"metadata\"") && has("\"data\""))
 }
 
 /// Reads a file as a document.
