@@ -60,14 +60,18 @@ fn a_c_program_gets_the_report_of_the_command() {
 
 /// No door is more lenient than another.
 #[test]
-fn every_fault_of_the_kit_has_the_same_verdict() {
+fn faults_of_the_kit_have_the_same_verdict() {
     let Ok(libraries) = std::env::var("BBRF_CAPI") else {
         eprintln!("skipped: BBRF_CAPI does not name the folder of libbbrf (make test builds and sets it)");
         return;
     };
     let folder = tempfile::tempdir().unwrap();
     let program = programs(Path::new(&libraries), folder.path()).remove(0);
-    for fault in FAULTS {
+    // All faults of bytes and structure, and one of every other rule.
+    let of_structure = |rule: &str| rule.starts_with("structure.");
+    let first = |number: usize| FAULTS.iter().position(|other| other.rule == FAULTS[number].rule) == Some(number);
+    let chosen = FAULTS.iter().enumerate().filter(|(number, fault)| of_structure(fault.rule) || first(*number));
+    for (_, fault) in chosen {
         let file = folder.path().join(fault.file_name());
         std::fs::write(&file, fault.bytes()).unwrap();
         let expected = match validate_bytes(&fault.bytes()).status() {
