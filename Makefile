@@ -41,17 +41,20 @@ build: $(CMAKE_READY) ## Build the command, optimised.
 demo: build ## Import the simulated scan, fit it, validate the file, draw it.
 	bash scripts/demo.sh $(RELEASE)
 
-test: $(CMAKE_READY) $(VENV)/ready ## All tests: unit, property, golden, command line, other readers, doc examples.
-	BBRF_PYTHON=$(VENV)/bin/python $(CARGO) test --locked
+test: $(CMAKE_READY) $(VENV)/ready ## All tests: unit, property, golden, command line, C, other readers, doc examples.
+	$(CARGO) build --locked --package bbrf-capi
+	BBRF_CAPI=$(TARGET)/debug BBRF_PYTHON=$(VENV)/bin/python $(CARGO) test --locked
 
 test-ecosystem: $(CMAKE_READY) $(VENV)/ready ## Heavier partners: h5dump and h5repack (Debian's hdf5-tools).
 	BBRF_PYTHON=$(VENV)/bin/python $(CARGO) test --locked --test ecosystem -- --ignored
 
 lint: $(CMAKE_READY) ## rustfmt, clippy and docs with warnings denied; the reading half without a C compiler.
-	$(CARGO) fmt --check
+	$(CARGO) fmt --all --check
 	$(CARGO) clippy --locked --all-targets -- -D warnings
+	$(CARGO) clippy --locked --package bbrf-capi -- -D warnings
 	RUSTDOCFLAGS='-D warnings' $(CARGO) doc --locked --no-deps
 	RUSTFLAGS='-D warnings' $(CARGO) check --locked --no-default-features --lib --target-dir target/no-write
+	RUSTFLAGS='-D warnings' $(CARGO) check --locked --no-default-features --package bbrf-capi --target-dir target/no-write
 
 $(VENV)/bench-ready: $(VENV)/ready benches/requirements.txt
 	$(VENV)/bin/pip install --quiet --disable-pip-version-check -r benches/requirements.txt

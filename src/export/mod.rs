@@ -6,3 +6,4 @@
 
 pub mod json;
 pub mod table_csv;
+pub mod universal_brdf;

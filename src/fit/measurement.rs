@@ -12,7 +12,7 @@ use crate::dataset::{
     Document, FittedParameter, FittedTerm, Id, Measurement, Model, ReduceError, Reduced, Reduction, Residuals,
     TermsError, reduce, residuals,
 };
-use crate::quantity::{Part, Reference};
+use crate::quantity::{Part, QuantityKind, Reference};
 use crate::terms::{Denominator, Distribution, Parameter, TermKind};
 
 /// What to fit and how.
@@ -90,6 +90,17 @@ pub enum FitError {
         /// What was asked for.
         asked: Reference,
     },
+    /// A ratio to the irradiance of the surface, where the terms are of radiance over that of the beam.
+    #[error(
+        "measurement `{measurement}` is a `{kind}`; expected a factor or a radiance: pi and cos(theta_i) are between the \
+         two, so convert it to a radiance factor first (times pi, with the reference `same-geometry`)"
+    )]
+    NoFactor {
+        /// Which measurement.
+        measurement: String,
+        /// What it is.
+        kind: QuantityKind,
+    },
     /// The same term twice, or a term of the result without a parameter.
     #[error(transparent)]
     Terms(#[from] TermsError),
@@ -138,6 +149,10 @@ pub fn fit_measurement(
     options: &FitOptions,
 ) -> Result<Model, FitError> {
     let name = || measurement.id.to_string();
+    let kind = measurement.quantity.kind;
+    if matches!(kind, QuantityKind::Brdf | QuantityKind::Brrdf) {
+        return Err(FitError::NoFactor { measurement: name(), kind });
+    }
     let choice = Choice::new(&options.terms, measurement.quantity.part)?;
     let mut data = reduce(document, measurement, options.reduction)?;
     let (reference, assumed) = match (data.reference, options.assume_reference) {

@@ -1,5 +1,5 @@
 //! Other people's formats, one file each: texts of the PR-650, PR-655 and PR-670, SpectraWin exports, texts of columns,
-//! the table CSV, and scans described by a manifest, a name pattern or a scan order. Every import writes a receipt:
+//! the table CSV, Universal BRDF JSON, and scans described by a manifest, a name pattern or a scan order. Every import writes a receipt:
 //! what was read, what was assumed, what could not be filled, what is worth a look.
 //!
 //! *May use:* `dataset`, `quantity`. Not `container`: an import makes a document, and who asked for it writes it.
@@ -60,6 +60,7 @@ mod spectrawin;
 pub mod table_csv;
 mod text;
 mod times;
+pub mod universal_brdf;
 
 use std::path::{Path, PathBuf};
 
@@ -91,6 +92,8 @@ named! {
         Manifest = "manifest",
         /// Scan manifest in TOML.
         ManifestToml = "manifest-toml",
+        /// Universal BRDF JSON.
+        UniversalBrdf = "universal-brdf",
     }
 }
 
@@ -164,16 +167,21 @@ fn import_one(path: &Path, options: &Options, notes: &mut Notes) -> Result<Docum
     let source = Source::read(path, &path.display().to_string())?;
     match options.format.unwrap_or_else(|| spectra::sniff(&source)) {
         Format::TableCsv => table_csv::document(&source, options, notes),
+        Format::UniversalBrdf => {
+            refuse_file_options(options, "a Universal BRDF file")?;
+            universal_brdf::document(&source, options, notes)
+        }
         Format::Manifest | Format::ManifestToml => {
-            refuse_file_options(options)?;
+            refuse_file_options(options, "a manifest")?;
             scan::assemble(manifest::plan(&source, path, options, notes)?, options, notes)
         }
         _ => scan::assemble(gather::plan(&[path.to_path_buf()], Some(&source), options, notes)?, options, notes),
     }
 }
 
-/// A manifest says which files have which role: naming some in the call as well would be two truths.
-fn refuse_file_options(options: &Options) -> Result<(), ImportError> {
+/// A manifest says which files have which role: naming some in the call as well would be two truths. So does a file of
+/// points.
+fn refuse_file_options(options: &Options, what: &str) -> Result<(), ImportError> {
     let given = [
         ("--pattern", options.pattern.is_some()),
         ("--scan-order", options.scan_order.is_some()),
@@ -187,9 +195,9 @@ fn refuse_file_options(options: &Options) -> Result<(), ImportError> {
     let Some((option, _)) = given.into_iter().find(|(_, given)| *given) else { return Ok(()) };
     Err(ImportError::Call(fault(
         Place::file("the call"),
-        format!("{option} with a manifest"),
+        format!("{option} with {what}"),
         "roles and geometries in one place",
-        "say it in the manifest",
+        "say it in the file",
     )))
 }
 

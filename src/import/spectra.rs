@@ -13,6 +13,9 @@ const TABLE_COLUMNS: &[&str] = &["theta_i_deg", "theta_i", "emission_nm", "excit
 
 /// What format a text is in, by its content.
 pub(super) fn sniff(source: &Source) -> Format {
+    if super::universal_brdf::is_one(&source.text.content) {
+        return Format::UniversalBrdf;
+    }
     let header = super::rows::header_line(source).map_or("", |(_, text)| text).to_ascii_lowercase();
     let columns: Vec<&str> = header.split([',', ';']).map(|name| name.trim().trim_matches('"').trim()).collect();
     let toml = source.name.to_ascii_lowercase().ends_with(".toml") || header.trim() == "[[record]]";

@@ -38,16 +38,11 @@ pub fn validate_files<P: AsRef<Path> + Sync>(files: &[P], grading: &Grading, don
 /// Validates one file.
 #[must_use]
 pub fn validate_file(path: &Path, grading: &Grading) -> Checked {
-    let file = path.display().to_string();
-    let mut report = match std::fs::read(path) {
+    let report = match std::fs::read(path) {
         Ok(bytes) => validate_bytes(&bytes),
         Err(error) => not_read(&error),
     };
-    for finding in &mut report.findings {
-        finding.place.file = Some(file.clone());
-    }
-    report.findings.retain_mut(|finding| grading.apply(finding));
-    Checked { file, status: report.status(), report }
+    Checked::new(path.display().to_string(), report, grading)
 }
 
 /// A number with its noun.
@@ -65,6 +60,16 @@ fn not_read(error: &std::io::Error) -> Report {
 }
 
 impl Checked {
+    /// A report under a grading, with the name of what it is about in every place.
+    #[must_use]
+    pub fn new(file: String, mut report: Report, grading: &Grading) -> Self {
+        for finding in &mut report.findings {
+            finding.place.file = Some(file.clone());
+        }
+        report.findings.retain_mut(|finding| grading.apply(finding));
+        Self { file, status: report.status(), report }
+    }
+
     /// How many findings are of that severity.
     #[must_use]
     pub fn count(&self, severity: Severity) -> usize {

@@ -10,7 +10,7 @@ use crate::cli::output::{print_bytes, print_message};
 use crate::cli::overwrite::refuse_overwriting;
 use crate::container;
 use crate::dataset::{Document, Measurement};
-use crate::export::{json, table_csv};
+use crate::export::{json, table_csv, universal_brdf};
 use crate::quantity::QuantityKind;
 
 /// Write a file in another format.
@@ -35,6 +35,15 @@ enum Format {
     Csv,
     /// The whole document
     Json,
+    /// One measurement as Universal BRDF JSON
+    UniversalBrdf,
+}
+
+impl Format {
+    /// What is written, in a message.
+    fn noun(self) -> &'static str {
+        if self == Self::Csv { "table" } else { "file" }
+    }
 }
 
 pub(crate) fn run(arguments: &Arguments) -> CommandResult {
@@ -48,6 +57,10 @@ pub(crate) fn run(arguments: &Arguments) -> CommandResult {
             let measurement = chosen(&document, arguments.measurement.as_deref())?;
             table_csv::write(&document, measurement, &mut bytes).into_diagnostic()?
         }
+        Format::UniversalBrdf => {
+            let measurement = chosen(&document, arguments.measurement.as_deref())?;
+            universal_brdf::write(&document, measurement, &mut bytes).map_err(|error| miette!("{error}"))?
+        }
         Format::Json => {
             let digest = container::digest(&document).map_err(|error| miette!("{error}"))?;
             json::write(&document, digest.as_str(), &mut bytes).into_diagnostic()?;
@@ -55,7 +68,7 @@ pub(crate) fn run(arguments: &Arguments) -> CommandResult {
         }
     };
     for what in lost {
-        print_message(&format!("bbrf: not in the table: {what}"));
+        print_message(&format!("bbrf: not in the {}: {what}", arguments.to.noun()));
     }
     match &arguments.output {
         Some(path) => container::replace::write_whole(path, |file| file.write_all(&bytes))

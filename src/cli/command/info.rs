@@ -20,6 +20,9 @@ pub(crate) struct Arguments {
     /// Print JSON
     #[arg(long)]
     json: bool,
+    /// Print the digest of the content and nothing else, to sign it or to compare files
+    #[arg(long, conflicts_with = "json")]
+    digest: bool,
 }
 
 /// What `--json` prints.
@@ -79,6 +82,10 @@ struct ModelInfo {
 
 pub(crate) fn run(arguments: &Arguments) -> CommandResult {
     let opened = container::read_file(&arguments.file).map_err(|error| miette!("{error}"))?;
+    if arguments.digest {
+        print_text(&opened.computed_digest.to_string())?;
+        return Ok(Outcome::Done);
+    }
     let result = InfoResult::new(arguments.file.display().to_string(), &opened);
     if arguments.json {
         print_json("bbrf:info:1", &result)?;

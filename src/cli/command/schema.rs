@@ -3,10 +3,11 @@
 use miette::miette;
 use schemars::{Schema, schema_for};
 
-use super::{info, rules, validate};
+use super::{info, rules};
 use crate::cli::exit::{CommandResult, Outcome};
 use crate::cli::output::print_text;
 use crate::dataset::Document;
+use crate::validate::form::ValidateResult;
 
 /// Print a JSON Schema, or the names of all.
 #[derive(Debug, clap::Args)]
@@ -28,7 +29,7 @@ pub(crate) fn all() -> Vec<(&'static str, Schema)> {
         ("migrate", schema_for!(super::migrate::MigrateResult)),
         ("report", schema_for!(super::report::ReportResult)),
         ("rules", schema_for!(rules::RulesResult)),
-        ("validate", schema_for!(validate::ValidateResult)),
+        ("validate", schema_for!(ValidateResult<'static>)),
     ];
     for (name, schema) in &mut schemas {
         schema.insert("$id".to_owned(), format!("bbrf:{name}:1").into());

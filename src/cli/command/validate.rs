@@ -9,7 +9,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::cli::exit::{CommandResult, Outcome};
-use crate::cli::output::{print_json, print_message, print_text};
+use crate::cli::output::{print_message, print_text};
 use crate::cli::progress::bar;
 use crate::container::replace::write_whole;
 use crate::validate::{Checked, Grading, PROFILES, Status, UnknownRule, form, profile, repair, validate_files};
@@ -66,12 +66,6 @@ enum Form {
     Markdown,
 }
 
-/// What `--output json` prints.
-#[derive(Debug, Serialize, JsonSchema)]
-pub(crate) struct ValidateResult {
-    files: Vec<Checked>,
-}
-
 /// Findings that are known and accepted.
 #[derive(Debug, Serialize, Deserialize, JsonSchema)]
 pub(crate) struct Baseline {
@@ -93,7 +87,7 @@ pub(crate) fn run(arguments: &Arguments) -> CommandResult {
         write_baseline(path, &files)?;
     }
     let worst = files.iter().map(|file| file.status).max().unwrap_or(Status::Valid);
-    print(files, if arguments.json { Form::Json } else { arguments.output })?;
+    print(&files, if arguments.json { Form::Json } else { arguments.output })?;
     match worst {
         Status::Valid => Ok(Outcome::Done),
         Status::Invalid => Ok(Outcome::Failed),
@@ -101,14 +95,14 @@ pub(crate) fn run(arguments: &Arguments) -> CommandResult {
     }
 }
 
-fn print(files: Vec<Checked>, form: Form) -> Result<(), miette::Report> {
+fn print(files: &[Checked], form: Form) -> Result<(), miette::Report> {
     let failed = |error: form::FormError| miette!("{error}");
     match form {
         Form::Text => files.iter().try_for_each(|file| print_text(&form::text(file))),
-        Form::Json => print_json("bbrf:validate:1", &ValidateResult { files }),
-        Form::Sarif => print_text(&form::sarif(&files).map_err(failed)?),
-        Form::Junit => print_text(&form::junit(&files).map_err(failed)?),
-        Form::Markdown => print_text(&form::markdown(&files)),
+        Form::Json => print_text(&form::json(files).map_err(failed)?),
+        Form::Sarif => print_text(&form::sarif(files).map_err(failed)?),
+        Form::Junit => print_text(&form::junit(files).map_err(failed)?),
+        Form::Markdown => print_text(&form::markdown(files)),
     }
 }
 

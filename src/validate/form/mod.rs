@@ -1,10 +1,12 @@
 //! A report in the forms that people and pipelines read.
 
+mod json;
 mod junit;
 mod markdown;
 mod sarif;
 mod text;
 
+pub use json::{JSON_SCHEMA, ValidateResult, json};
 pub use junit::junit;
 pub use markdown::markdown;
 pub use sarif::sarif;
