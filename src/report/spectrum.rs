@@ -5,6 +5,7 @@ use super::fitted::{Drawn, quantity_words};
 use super::frame::with_unit;
 use super::{ReportError, subject};
 use crate::dataset::{Document, Measurement};
+use crate::quantity::Flag;
 
 /// The most acquisitions without a usable value, as a share, at a wavelength whose mean is drawn. Mostly it is the low ones
 /// that are missing, so that the mean of the rest is too high.
@@ -68,9 +69,10 @@ fn mean_spectrum(measurement: &Measurement, nm: &[f64]) -> Points {
     let is_usable = |row: usize, column: usize| {
         measurement.values[(row, column)].is_finite() && measurement.flags_at(row, column).may_be_fitted()
     };
-    // A row without any value takes no part in the scan.
-    let used: Vec<usize> =
-        (0..measurement.values.nrows()).filter(|row| (0..columns).any(|column| is_usable(*row, column))).collect();
+    let is_below = |row: usize, column: usize| measurement.flags_at(row, column).contains(Flag::BelowDetection);
+    // A row that was not measured at all takes no part in the scan; one below detection throughout does.
+    let takes_part = |row: &usize| (0..columns).any(|column| is_usable(*row, column) || is_below(*row, column));
+    let used: Vec<usize> = (0..measurement.values.nrows()).filter(takes_part).collect();
     let is_whole = |column: usize| {
         let missing = used.iter().filter(|row| !is_usable(**row, column)).count();
         missing as f64 <= MOST_MISSING * used.len() as f64

@@ -354,8 +354,11 @@ fn text(model: &FittedModel) -> String {
     ));
     if let Some(s) = &model.separability {
         lines.push(format!(
-            "  separability, r.m.s. departures: average over viewing from a cosine {:.1} % of its amplitude, average over \
-             incidence from a constant {:.1} % of its mean, all values from the best product of both {:.1} % of their r.m.s.",
+            "  separability, as r.m.s. departures\n\
+             {0:20}average over viewing from a cosine: {1:.1} % of its amplitude\n\
+             {0:20}average over incidence from a constant: {2:.1} % of its mean\n\
+             {0:20}all values from the best product of both: {3:.1} % of their r.m.s.",
+            "",
             100.0 * s.cosine_relative_rms,
             100.0 * s.constancy_relative_rms,
             100.0 * s.rank_one_relative_rms
