@@ -138,6 +138,52 @@ fn eval_prints_the_angles_back_and_the_factors() {
 }
 
 #[test]
+fn eval_says_what_its_value_is_and_which_wavelengths_have_none() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = fitted(folder.path());
+    let geometry = folder.path().join("g.csv");
+    std::fs::write(&geometry, "# angles: signed, mirror-at-equal\ntheta_i_deg,theta_v_deg\n90,20\n-90,0\n0,10\n")
+        .unwrap();
+    let eval = |model: &Path| {
+        let mut command = bbrf();
+        command.arg("eval").arg("--json").arg("--model").arg(model).arg("--geometry").arg(&geometry);
+        command
+    };
+    let band = json(&mut eval(&file), "eval");
+    assert_eq!((&band["value"]["reference"], &band["value"]["unit"]), (&"none".into(), &"1".into()));
+    assert!(band["value"]["reduction"].as_str().unwrap().starts_with("band:"));
+    assert!(band["value"]["meaning"].as_str().unwrap().contains("Y/E"));
+    let every = folder.path().join("every.bbrf");
+    bbrf()
+        .args(["fit", "--reduce", "none", "--terms", "lambertian"])
+        .arg(folder.path().join("scan.bbrf"))
+        .arg("-o")
+        .arg(&every)
+        .assert()
+        .success()
+        .stdout(contains("every wavelength (94 with a model)"));
+    eval(&every).assert().success().stderr(contains("no row for 7 wavelengths of the measurement from 392 to 416 nm"));
+    let result = json(&mut eval(&every), "eval");
+    assert_eq!(result["value"]["without_model_nm"].as_array().unwrap().len(), 7);
+    let rows = result["rows"].as_array().unwrap();
+    assert!(rows[..2 * 94].iter().all(|row| row["value"] == 0.0), "at 90 degrees a Lambertian term is exactly 0");
+    assert!(rows[2 * 94]["value"].as_f64().unwrap() > 0.0);
+    bbrf().args(["eval", "--help"]).assert().success().stdout(contains("without a reference"));
+}
+
+#[test]
+fn a_fit_prints_value_and_uncertainty_alike_and_says_that_a_radiance_has_no_albedo() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = fitted(folder.path());
+    let text = stdout(bbrf().arg("fit").arg(&file));
+    assert!(text.contains("0.96827 ± 0.00018, and 0.51 % shared"), "{text}");
+    assert!(text.contains("of its amplitude") && text.contains("of their r.m.s."), "{text}");
+    let radiance = stdout(bbrf().args(["fit", "--measurement", "radiance"]).arg(&file));
+    assert!(radiance.contains("are amplitudes in that unit, no albedo"), "{radiance}");
+    assert!(!text.contains("no albedo"), "{text}");
+}
+
+#[test]
 fn a_geometry_without_a_value_fails_with_its_line_and_is_never_nan() {
     let folder = tempfile::tempdir().unwrap();
     let (model, geometry) = (folder.path().join("m.json"), folder.path().join("g.csv"));

@@ -207,3 +207,13 @@ fn one_wavelength_is_fitted_as_it_is() {
     let reduced = reduce(&document, &document.measurements[0], Reduction::Auto).unwrap();
     assert_eq!(reduced.reduction, "none");
 }
+
+#[test]
+fn rows_lost_below_detection_are_counted_and_named_as_truncation() {
+    let mut document = scan();
+    document.measurements[2].flags[(1, 2)] = Flag::BelowDetection.bit();
+    let reduced = reduce(&document, document.measurement("scan").unwrap(), band(500.0, 520.0)).unwrap();
+    assert_eq!((reduced.rows.as_slice(), reduced.left_out), ([0].as_slice(), 1));
+    let said = reduced.notes.iter().any(|note| note.contains("1 of 2 rows") && note.contains("truncated"));
+    assert!(said, "{:?}", reduced.notes);
+}

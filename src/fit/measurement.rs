@@ -173,6 +173,7 @@ pub fn fit_measurement(
         identifiability
             .push(format!("the measurement does not state its reference; `{reference}` was assumed on request"));
     }
+    identifiability.extend(not_a_ratio(&data, choice));
     identifiability.extend(findings(&fit, &set, choice.terms(), data.sigma.is_some(), &left_out));
     let separability = match separability(&data, &reference) {
         Ok(separability) => Some(separability),
@@ -184,7 +185,7 @@ pub fn fit_measurement(
     };
     let (covariance_parameters, covariance) = stored_covariance(&fit, choice);
     let mut model = Model {
-        id: Id::from_title(&format!("{}-{}", measurement.id, data.reduction)),
+        id: Id::from_title(&format!("{}-{}", measurement.id, what_was_fitted(&data))),
         title: None,
         measurement: measurement.id.clone(),
         data_digest: options.data_digest.clone(),
@@ -204,6 +205,30 @@ pub fn fit_measurement(
     let parameters = data.values.len() - fit.left_out.total() - fit.degrees_of_freedom as usize;
     model.residuals = residuals(&model, &data, parameters)?.1;
     Ok(model)
+}
+
+/// How the numbers were formed, for the model's id: a reduction to `none` keeps every wavelength.
+fn what_was_fitted(data: &Reduced) -> &str {
+    match data.emission.wavelengths() {
+        Some(_) if data.reduction == "none" => "every-wavelength",
+        None if data.reduction == "none" => "band",
+        _ => &data.reduction,
+    }
+}
+
+/// Amplitudes of a radiance carry its unit: the names of the parameters do not say so.
+fn not_a_ratio(data: &Reduced, choice: Choice) -> Option<String> {
+    let amplitude = |kind: TermKind| format!("`{}`", kind.parameters()[0].name);
+    let specular = choice.specular.then_some(TermKind::TorranceSparrow);
+    let names: Vec<String> = choice.diffuse.into_iter().chain(specular).map(amplitude).collect();
+    let (kind, unit) = (data.kind, data.kind.unit());
+    (!kind.is_factor()).then(|| {
+        format!(
+            "the fitted numbers are {kind} (unit {unit}) and no factor: {} are amplitudes in that unit, no albedo and no \
+             share of the incident light; only the fit of a factor gives those",
+            names.join(" and ")
+        )
+    })
 }
 
 /// Fits the terms; where no specular one is seen, the diffuse one alone over every geometry at which it has a value.

@@ -4,7 +4,7 @@ use ndarray::{Array2, ArrayView1};
 
 use super::ReportError;
 use crate::dataset::{Document, Model, Reduced, Reduction, reduce, residuals};
-use crate::quantity::Geometry;
+use crate::quantity::{EmissionAxis, Geometry};
 
 /// The numbers that a model was fitted to, one per geometry, with what the model predicts.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -17,7 +17,7 @@ pub struct AnglePoints {
     pub sigma: Vec<f64>,
     /// What the model predicts.
     pub predicted: Vec<f64>,
-    /// The wavelength they belong to, nm, where the model was fitted to each wavelength.
+    /// The wavelength they belong to, nm, where the model was fitted to each wavelength: that of the largest mean value.
     pub wavelength_nm: Option<f64>,
 }
 
@@ -26,7 +26,8 @@ impl AnglePoints {
     /// wavelength, those of the wavelength at which the mean value is largest.
     ///
     /// # Errors
-    /// [`ReportError`] when the measurement is not there, cannot be reduced so, or the model cannot be evaluated.
+    /// [`ReportError`] when the measurement is not there, cannot be reduced so, has another emission axis than the model,
+    /// or the model cannot be evaluated.
     pub fn of(document: &Document, model: &Model) -> Result<Self, ReportError> {
         let name = || model.id.to_string();
         let measurement = document
@@ -36,6 +37,7 @@ impl AnglePoints {
             model.reduction.parse().map_err(|source| ReportError::Reduction { model: name(), source })?;
         let data =
             reduce(document, measurement, reduction).map_err(|source| ReportError::Reduce { model: name(), source })?;
+        check_axis(model, &data)?;
         let (residual, _) =
             residuals(model, &data, 0).map_err(|source| ReportError::Terms { model: name(), source })?;
         let points = Self::measured(&data);
@@ -69,6 +71,18 @@ impl AnglePoints {
         }
     }
 
+    /// Root mean square of measured minus predicted, in the unit of the values.
+    pub(super) fn rms(&self) -> f64 {
+        let squares = self.measured.iter().zip(&self.predicted).map(|(value, predicted)| (value - predicted).powi(2));
+        let finite: Vec<f64> = squares.filter(|square| square.is_finite()).collect();
+        (finite.iter().sum::<f64>() / finite.len() as f64).sqrt()
+    }
+
+    /// ` at 528 nm`, or nothing.
+    pub(super) fn at_wavelength(&self) -> String {
+        self.wavelength_nm.map_or_else(String::new, |nm| format!(" at {nm} nm"))
+    }
+
     /// Measured minus predicted: over the standard uncertainty where every value has one, else as it is.
     pub(super) fn residuals(&self) -> ScaledResiduals {
         let pairs = || self.measured.iter().zip(&self.predicted).zip(&self.sigma);
@@ -79,6 +93,26 @@ impl AnglePoints {
             .collect();
         ScaledResiduals { values, is_scaled }
     }
+}
+
+/// Checks that an emission index means the same in the model and in its data.
+fn check_axis(model: &Model, data: &Reduced) -> Result<(), ReportError> {
+    let is_same = match (model.emission.wavelengths(), data.emission.wavelengths()) {
+        (Some(stored), Some(data)) => stored == data,
+        (None, None) => true,
+        _ => false,
+    };
+    if is_same {
+        return Ok(());
+    }
+    let in_words = |axis: &EmissionAxis| match axis.wavelengths() {
+        Some([first, .., last]) => format!("{} wavelengths from {first} to {last} nm", axis.len()),
+        Some([only]) => format!("{only} nm"),
+        Some([]) => "no wavelength".to_owned(),
+        None => "one band".to_owned(),
+    };
+    let (stored, data) = (in_words(&model.emission), in_words(&data.emission));
+    Err(ReportError::OtherAxis { model: model.id.to_string(), stored, data })
 }
 
 /// Residuals, and in what they are counted.

@@ -197,7 +197,43 @@ impl Area {
     }
 }
 
+/// The part of a polygon between the upper and the lower edge of an area.
+pub(super) fn clipped(polygon: Vec<(f64, f64)>, area: Area) -> Vec<(f64, f64)> {
+    let below_top = cut(&polygon, area.top, |y| y >= area.top);
+    cut(&below_top, area.bottom(), |y| y <= area.bottom())
+}
+
+/// The part of a polygon on one side of a level line (Sutherland and Hodgman's way).
+fn cut(polygon: &[(f64, f64)], level: f64, is_inside: impl Fn(f64) -> bool) -> Vec<(f64, f64)> {
+    let mut kept = Vec::with_capacity(polygon.len() + 4);
+    let before = polygon.iter().cycle().skip(polygon.len().saturating_sub(1));
+    for (from, to) in before.zip(polygon) {
+        if is_inside(from.1) != is_inside(to.1) {
+            let share = (level - from.1) / (to.1 - from.1);
+            kept.push((from.0 + share * (to.0 - from.0), level));
+        }
+        if is_inside(to.1) {
+            kept.push(*to);
+        }
+    }
+    kept
+}
+
 /// Control characters are not allowed in XML; they become spaces.
 fn printable(text: &str) -> String {
     text.chars().map(|c| if c.is_control() || matches!(c, '\u{fffe}' | '\u{ffff}') { ' ' } else { c }).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_polygon_is_cut_where_it_leaves_the_area_and_not_bent() {
+        let area = Area::new(0.0, 0.0, 10.0, 10.0);
+        let triangle = vec![(0.0, 5.0), (10.0, -5.0), (10.0, 5.0)];
+        assert_eq!(clipped(triangle, area), [(0.0, 5.0), (5.0, 0.0), (10.0, 0.0), (10.0, 5.0)]);
+        assert_eq!(clipped(vec![(0.0, 20.0), (5.0, 30.0), (9.0, 20.0)], area), []);
+        assert_eq!(clipped(Vec::new(), area), []);
+    }
 }

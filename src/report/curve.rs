@@ -1,8 +1,9 @@
-//! Points with error bars and curves over one axis: the averages of the paper's Figs 3 and 4, and spectra.
+//! Points with error bars and curves over one axis: the averages of the paper's Figs 3 and 4, and spectra. Where a number
+//! is missing the line ends and begins anew: a gap is drawn as a gap.
 
 use kuva::render::render::TextAnchor;
 
-use super::canvas::{Area, Canvas, FITTED, MEASURED, Style};
+use super::canvas::{Area, Canvas, FITTED, MEASURED, Style, clipped};
 use super::frame::{Frame, Labels, TICK_SIZE};
 use super::scale::{Scale, extent};
 use super::{Figure, ReportError};
@@ -16,13 +17,17 @@ const HEIGHT: f64 = 320.0;
 pub(super) const BELOW: f64 = 96.0;
 /// Error bars may reach this share of the range of the numbers beyond them; longer ones are cut at the frame.
 const BAR_SHARE: f64 = 0.15;
+/// Radius of a single value between two gaps of a spectrum.
+const SINGLE: f64 = 3.2;
+/// Height of a line of the legend.
+const LEGEND_LINE: f64 = 22.0;
 
 /// Measured points: one number per abscissa, with the half length of its error bar.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Points {
     /// Abscissae.
     pub x: Vec<f64>,
-    /// Ordinates; what is not finite is left out.
+    /// Ordinates; what is not finite is a gap.
     pub y: Vec<f64>,
     /// Half lengths of the error bars, or bands; empty for none.
     pub error: Vec<f64>,
@@ -99,7 +104,9 @@ fn draw(points: &Points, curve: Option<&Curve>, text: &CurveText, form: Form) ->
     check(points, curve, &text.name)?;
     let area = text.area();
     let frame = frame_around(area, points, curve).ok_or_else(|| ReportError::Empty { figure: text.name.clone() })?;
-    let mut canvas = Canvas::new(SHEET_WIDTH, area.bottom() + BELOW);
+    let is_cut = form == Form::Dots && is_any_bar_cut(&frame, points);
+    let more = if is_cut { LEGEND_LINE } else { 0.0 };
+    let mut canvas = Canvas::new(SHEET_WIDTH, area.bottom() + BELOW + more);
     frame.draw_grid(&mut canvas);
     match form {
         Form::Dots => draw_dots(&mut canvas, &frame, points, curve),
@@ -107,6 +114,9 @@ fn draw(points: &Points, curve: Option<&Curve>, text: &CurveText, form: Form) ->
     }
     frame.draw_axes(&mut canvas, &text.labels());
     draw_legend(&mut canvas, area, points, curve, form);
+    if is_cut {
+        draw_cut_legend(&mut canvas, area);
+    }
     Ok(Figure::new(&text.name, text.caption.clone(), canvas.finish()))
 }
 
@@ -138,7 +148,7 @@ fn frame_around(area: Area, points: &Points, curve: Option<&Curve>) -> Option<Fr
     let (low, high) = (low.min(bar_low.max(low - room)), high.max(bar_high.min(high + room)));
     let y = Scale::linear_over([low, high])?;
     let y = if low > 0.0 && low < 0.6 * high { y.including(0.0) } else { y };
-    Some(Frame { area, x: x.widened(0.03), y: y.widened(0.06) })
+    Some(Frame::new(area, x.widened(0.03), y.widened(0.06)))
 }
 
 /// The median half length of the error bars.
@@ -148,11 +158,19 @@ fn typical_error(points: &[(f64, f64, f64)]) -> f64 {
     errors.get(errors.len() / 2).copied().unwrap_or(0.0)
 }
 
-/// (x, y, error) of the points that can be drawn; an unknown error is 0.
-fn finite_points(points: &Points) -> Vec<(f64, f64, f64)> {
+/// (x, y, error) of every point; an unknown error is 0.
+fn all_points(points: &Points) -> Vec<(f64, f64, f64)> {
     let error = |at: usize| points.error.get(at).copied().filter(|error| error.is_finite()).unwrap_or(0.0).abs();
-    let all = points.x.iter().zip(&points.y).enumerate().map(|(at, (x, y))| (*x, *y, error(at)));
-    all.filter(|(x, y, _)| x.is_finite() && y.is_finite()).collect()
+    points.x.iter().zip(&points.y).enumerate().map(|(at, (x, y))| (*x, *y, error(at))).collect()
+}
+
+/// Those that can be drawn.
+fn finite_points(points: &Points) -> Vec<(f64, f64, f64)> {
+    all_points(points).into_iter().filter(is_finite).collect()
+}
+
+fn is_finite((x, y, _): &(f64, f64, f64)) -> bool {
+    x.is_finite() && y.is_finite()
 }
 
 fn draw_dots(canvas: &mut Canvas, frame: &Frame, points: &Points, curve: Option<&Curve>) {
@@ -165,33 +183,70 @@ fn draw_dots(canvas: &mut Canvas, frame: &Frame, points: &Points, curve: Option<
     draw_curve(canvas, frame, curve);
 }
 
-/// A bar with caps; where it leaves the frame it is cut and has none.
+fn is_any_bar_cut(frame: &Frame, points: &Points) -> bool {
+    let is_outside = |y: f64| !(0.0..=1.0).contains(&frame.y.position(y));
+    finite_points(points).into_iter().any(|(_, y, error)| is_outside(y - error) || is_outside(y + error))
+}
+
+/// A bar with caps; where it leaves the frame it is cut there and ends in an arrow.
 fn draw_error_bar(canvas: &mut Canvas, low: (f64, f64), high: (f64, f64), frame: Area) {
     let inside = |y: f64| y.clamp(frame.top, frame.bottom());
     canvas.line((low.0, inside(low.1)), (high.0, inside(high.1)), MEASURED, 1.4);
-    for end in [low, high].into_iter().filter(|end| inside(end.1) == end.1) {
-        canvas.line((end.0 - 4.0, end.1), (end.0 + 4.0, end.1), MEASURED, 1.4);
+    for (x, y) in [low, high] {
+        let tip = inside(y);
+        // Of an arrow the sides lead back into the frame; of a cap they lie level.
+        let back = if tip == y { 0.0 } else { 6.0 * (tip - y).signum() };
+        canvas.line((x - 4.0, tip + back), (x, tip), MEASURED, 1.4);
+        canvas.line((x, tip), (x + 4.0, tip + back), MEASURED, 1.4);
     }
 }
 
 fn draw_band(canvas: &mut Canvas, frame: &Frame, points: &Points, curve: Option<&Curve>) {
-    let drawn = finite_points(points);
-    if drawn.iter().any(|(_, _, error)| *error > 0.0) && drawn.len() > 1 {
-        let upper = drawn.iter().map(|(x, y, error)| frame.point(*x, y + error));
-        let lower = drawn.iter().rev().map(|(x, y, error)| frame.point(*x, y - error));
-        canvas.polygon(&upper.chain(lower).collect::<Vec<_>>(), MEASURED, 0.25);
+    for piece in all_points(points).split(|point| !is_finite(point)) {
+        match piece {
+            [] => {}
+            [only] => draw_single(canvas, frame, *only),
+            piece => draw_piece(canvas, frame, piece),
+        }
     }
-    if let [only] = drawn[..] {
-        canvas.dot(frame.point(only.0, only.1), 4.5, MEASURED);
-    }
-    canvas.polyline(drawn.iter().map(|(x, y, _)| frame.point(*x, *y)).collect(), MEASURED, 2.2);
     draw_curve(canvas, frame, curve);
+}
+
+/// A value between two gaps.
+fn draw_single(canvas: &mut Canvas, frame: &Frame, (x, y, error): (f64, f64, f64)) {
+    if error > 0.0 {
+        draw_error_bar(canvas, frame.point(x, y - error), frame.point(x, y + error), frame.area);
+    }
+    canvas.dot(frame.point(x, y), SINGLE, MEASURED);
+}
+
+/// Two neighbours or more, in a band that ends at the frame.
+fn draw_piece(canvas: &mut Canvas, frame: &Frame, piece: &[(f64, f64, f64)]) {
+    if piece.iter().any(|(_, _, error)| *error > 0.0) {
+        let upper = piece.iter().map(|(x, y, error)| frame.point(*x, y + error));
+        let lower = piece.iter().rev().map(|(x, y, error)| frame.point(*x, y - error));
+        let band = clipped(upper.chain(lower).collect(), frame.area);
+        canvas.polygon(&band, MEASURED, 0.25);
+    }
+    canvas.polyline(piece.iter().map(|(x, y, _)| frame.point(*x, *y)).collect(), MEASURED, 2.2);
 }
 
 pub(super) fn draw_curve(canvas: &mut Canvas, frame: &Frame, curve: Option<&Curve>) {
     let Some(curve) = curve else { return };
-    let finite = curve.x.iter().zip(&curve.y).filter(|(x, y)| x.is_finite() && y.is_finite());
-    canvas.polyline(finite.map(|(x, y)| frame.point(*x, *y)).collect(), FITTED, 2.2);
+    let points: Vec<(f64, f64)> = curve.x.iter().copied().zip(curve.y.iter().copied()).collect();
+    for piece in points.split(|(x, y)| !(x.is_finite() && y.is_finite())).filter(|piece| !piece.is_empty()) {
+        canvas.polyline(piece.iter().map(|(x, y)| frame.point(*x, *y)).collect(), FITTED, 2.2);
+    }
+}
+
+/// The second line of a legend: what an arrow at an error bar means.
+fn draw_cut_legend(canvas: &mut Canvas, area: Area) {
+    let (x, y) = (area.left + 13.0, area.bottom() + 78.0 + LEGEND_LINE);
+    let swatch = Area::new(area.left, y - 14.0, 26.0, 18.0);
+    canvas.line((x, swatch.bottom()), (x, swatch.top), MEASURED, 1.4);
+    draw_error_bar(canvas, (x, swatch.bottom()), (x, swatch.top - 1.0), swatch);
+    let text = "arrow: the error bar goes on beyond the frame";
+    canvas.text((area.left + 34.0, y), text, Style::new(TICK_SIZE, TextAnchor::Start));
 }
 
 fn draw_legend(canvas: &mut Canvas, area: Area, points: &Points, curve: Option<&Curve>, form: Form) {

@@ -79,6 +79,30 @@ pub enum ReportError {
         /// Why.
         source: ReduceError,
     },
+    /// At every wavelength some acquisitions have no usable value.
+    #[error(
+        "measurement `{measurement}`: its mean spectrum; at every wavelength more than a fiftieth of the {rows} acquisitions \
+         have no usable value (missing, below detection), and the mean of the rest would be too high"
+    )]
+    NoWholeWavelength {
+        /// Which measurement.
+        measurement: String,
+        /// How many acquisitions it has.
+        rows: usize,
+    },
+    /// The model was stored over another emission axis than its data have now.
+    #[error(
+        "model `{model}`: stored over {stored}, while its measurement reduces to {data}; its values cannot be set beside the \
+         data: fit it again"
+    )]
+    OtherAxis {
+        /// Which model.
+        model: String,
+        /// The axis of the model.
+        stored: String,
+        /// That of the data.
+        data: String,
+    },
     /// Too few angles for a map.
     #[error(
         "{figure}: {incidences} x {viewings} different angles of incidence and of viewing; a map needs two of each or more"

@@ -34,6 +34,12 @@ impl Figure {
         self
     }
 
+    /// The same figure with one more sentence in its caption.
+    pub(super) fn noted(mut self, sentence: &str) -> Self {
+        self.caption = format!("{} {sentence}", self.caption);
+        self
+    }
+
     /// What the figure shows, a sentence or two.
     #[must_use]
     pub fn caption(&self) -> &str {
@@ -76,6 +82,8 @@ impl Figure {
         let (width, height) = (self.scene.width, self.scene.height);
         // The backend writes a fixed size only; with a view box a page can scale the figure.
         let opening = format!("<svg viewBox=\"0 0 {width} {height}\" role=\"img\" ");
-        backend.render_scene(&self.scene).replacen("<svg ", &opening, 1)
+        let svg = backend.render_scene(&self.scene).replacen("<svg ", &opening, 1);
+        // Neighbouring cells end on the same pixel: without this a light line stands between them at most sizes.
+        svg.replace("<rect ", "<rect shape-rendering=\"crispEdges\" ")
     }
 }

@@ -3,7 +3,7 @@
 use kuva::render::render::TextAnchor;
 
 use super::canvas::{Area, Canvas, GRID, INK, Style};
-use super::scale::Scale;
+use super::scale::{Scale, Tick};
 
 /// Sizes of text, in units of the drawing.
 pub(super) const TITLE_SIZE: u32 = 17;
@@ -32,15 +32,30 @@ pub(super) struct Labels<'a> {
     pub(super) y: &'a str,
 }
 
-/// A plotting area with its two scales.
-#[derive(Debug, Clone, Copy)]
+/// A plotting area with its two scales and their ticks.
+#[derive(Debug, Clone)]
 pub(super) struct Frame {
     pub(super) area: Area,
     pub(super) x: Scale,
     pub(super) y: Scale,
+    x_ticks: Vec<Tick>,
+    y_ticks: Vec<Tick>,
 }
 
 impl Frame {
+    /// Ticks at round numbers, or each 20 degrees.
+    pub(super) fn new(area: Area, x: Scale, y: Scale) -> Self {
+        let x_ticks = degree_ticks(&x).unwrap_or_else(|| x.ticks(7));
+        let y_ticks = degree_ticks(&y).unwrap_or_else(|| y.ticks(6));
+        Self { area, x, y, x_ticks, y_ticks }
+    }
+
+    /// Ticks at measured angles, as many as can be read.
+    pub(super) fn over_angles(area: Area, (x, x_deg): (Scale, &[f64]), (y, y_deg): (Scale, &[f64])) -> Self {
+        let (x_ticks, y_ticks) = (x.ticks_among(x_deg, 12), y.ticks_among(y_deg, 12));
+        Self { area, x, y, x_ticks, y_ticks }
+    }
+
     /// The place of a pair of numbers on the sheet.
     pub(super) fn point(&self, x: f64, y: f64) -> (f64, f64) {
         let area = &self.area;
@@ -49,11 +64,11 @@ impl Frame {
 
     /// Light lines at the ticks.
     pub(super) fn draw_grid(&self, canvas: &mut Canvas) {
-        for tick in self.x_ticks() {
+        for tick in &self.x_ticks {
             let (x, _) = self.point(tick.value, 0.0);
             canvas.line((x, self.area.top), (x, self.area.bottom()), GRID, 1.0);
         }
-        for tick in self.y.ticks(6) {
+        for tick in &self.y_ticks {
             let y = self.area.bottom() - self.area.height * self.y.position(tick.value);
             canvas.line((self.area.left, y), (self.area.right(), y), GRID, 1.0);
         }
@@ -74,7 +89,7 @@ impl Frame {
 
     fn draw_x_ticks(&self, canvas: &mut Canvas) {
         let bottom = self.area.bottom();
-        for tick in self.x_ticks() {
+        for tick in &self.x_ticks {
             let x = self.area.left + self.area.width * self.x.position(tick.value);
             canvas.line((x, bottom), (x, bottom + 5.0), INK, 1.0);
             canvas.text((x, bottom + 21.0), &tick.label, Style::new(TICK_SIZE, TextAnchor::Middle));
@@ -82,24 +97,16 @@ impl Frame {
     }
 
     fn draw_y_ticks(&self, canvas: &mut Canvas) {
-        for tick in self.y_ticks() {
+        for tick in &self.y_ticks {
             let y = self.area.bottom() - self.area.height * self.y.position(tick.value);
             canvas.line((self.area.left - 5.0, y), (self.area.left, y), INK, 1.0);
             canvas.text((self.area.left - 9.0, y + 4.5), &tick.label, Style::new(TICK_SIZE, TextAnchor::End));
         }
     }
-
-    fn x_ticks(&self) -> Vec<super::scale::Tick> {
-        degree_ticks(&self.x).unwrap_or_else(|| self.x.ticks(7))
-    }
-
-    fn y_ticks(&self) -> Vec<super::scale::Tick> {
-        degree_ticks(&self.y).unwrap_or_else(|| self.y.ticks(6))
-    }
 }
 
 /// Ticks each 20 degrees where a scale spans more than a quadrant and at most the half circle, as in-plane angles do.
-fn degree_ticks(scale: &Scale) -> Option<Vec<super::scale::Tick>> {
+fn degree_ticks(scale: &Scale) -> Option<Vec<Tick>> {
     let Scale::Linear { from, to } = *scale else { return None };
     let is_angular = from >= -100.0 && to <= 100.0 && to - from > 95.0;
     is_angular.then(|| Scale::Linear { from, to }.ticks(((to - from) / 20.0).ceil() as usize))

@@ -30,7 +30,7 @@ pub fn histogram(values: &[f64], expected: Option<&str>, text: &CurveText) -> Re
     let tallest = counts.iter().copied().max().unwrap_or(0) as f64;
     let peak = curve.iter().flat_map(|curve| &curve.y).fold(tallest, |peak: f64, y| peak.max(*y));
     let y = Scale::Linear { from: 0.0, to: 1.08 * peak.max(1.0) };
-    let frame = Frame { area: text.area(), x: Scale::Linear { from, to }, y };
+    let frame = Frame::new(text.area(), Scale::Linear { from, to }, y);
     Ok(draw_histogram(&frame, &counts, curve.as_ref(), text))
 }
 

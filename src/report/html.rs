@@ -115,7 +115,7 @@ pub(super) fn value_and_uncertainty(value: f64, sigma: f64) -> (String, String) 
 }
 
 /// A number to some significant digits, without an exponent where it is of ordinary size.
-fn significant(value: f64, digits: usize) -> String {
+pub(super) fn significant(value: f64, digits: usize) -> String {
     if value == 0.0 {
         return "0".to_owned();
     }

@@ -92,7 +92,7 @@ fn draw(map: &AngleMap, filled: Option<&Filled>, colours: Colours, text: &MapTex
     let area = Area::new(LEFT, labels.height(SIDE), SIDE, SIDE);
     let mut canvas = Canvas::new(WIDTH, area.bottom() + BELOW);
     let (x_edges, y_edges) = (edges(&map.theta_i_deg), edges(&map.theta_v_deg));
-    let frame = Frame { area, x: ends(&x_edges), y: ends(&y_edges) };
+    let frame = Frame::over_angles(area, (ends(&x_edges), &map.theta_i_deg), (ends(&y_edges), &map.theta_v_deg));
     let mut seen = Seen::default();
     for ((i, v), &value) in map.values.indexed_iter() {
         let (left, bottom) = frame.point(x_edges[i], y_edges[v]);
@@ -157,7 +157,7 @@ fn draw_colour_bar(canvas: &mut Canvas, above: Area, colours: Colours, label: &s
         canvas.rectangle(Area::new(left, bar.top, width + 0.4, bar.height), colours.colour(value));
     }
     canvas.outline(bar, INK, 1.0);
-    for tick in scale.ticks(8) {
+    for tick in scale.ticks_with_ends(8) {
         let x = bar.left + bar.width * scale.position(tick.value);
         canvas.line((x, bar.bottom()), (x, bar.bottom() + 5.0), INK, 1.0);
         canvas.text((x, bar.bottom() + 20.0), &tick.label, Style::new(TICK_SIZE, TextAnchor::Middle));

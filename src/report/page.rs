@@ -1,8 +1,11 @@
 //! One HTML page about a document: self-contained, without scripts, for light and dark screens.
 
+use super::fitted::quantity_words;
 use super::html::{Html, escaped, number, value_and_uncertainty};
-use super::{AnglePoints, Drawn, Figure, fitted_figures, measurement_figures, scan_figures};
-use crate::dataset::{Document, FittedParameter, FittedTerm, Measurement, Model, Provenance, Receipt, Sample};
+use super::{AnglePoints, Drawn, Figure, fitted_figures, measurement_figures, scan_figures, subject};
+use crate::dataset::{
+    Document, FittedParameter, FittedTerm, Measurement, Model, Provenance, Receipt, Sample, Separability,
+};
 use crate::quantity::{EmissionAxis, Flag};
 
 /// The style sheet of the page.
@@ -160,9 +163,21 @@ fn write_fit(html: &mut Html, model: &Model) {
         ("values", Some(format!("{} fitted, {} left out", residuals.count, residuals.left_out))),
         ("r.m.s. residual", Some(format!("{} (unit {})", number(residuals.rms), model.unit))),
         ("reduced chi-square", Some(number(residuals.reduced_chi_square))),
+        ("separability", model.separability.as_ref().map(separability)),
         ("method", Some(model.method.clone())),
         ("digest of the data", Some(model.data_digest.clone())),
     ]);
+}
+
+/// The three departures, each with what it is relative to.
+fn separability(check: &Separability) -> String {
+    format!(
+        "r.m.s. departure of the average over viewing from a cosine {} of its amplitude; of the average over incidence from a \
+         constant {} of its mean; of all values from the best product f(theta_i) g(theta_v) {} of their r.m.s.",
+        percent(check.cosine_relative_rms),
+        percent(check.constancy_relative_rms),
+        percent(check.rank_one_relative_rms)
+    )
 }
 
 fn write_measurements(html: &mut Html, document: &Document, pictures: &Pictures) {
@@ -171,7 +186,9 @@ fn write_measurements(html: &mut Html, document: &Document, pictures: &Pictures)
     }
     html.text("h2", "Measurements");
     for (index, measurement) in document.measurements.iter().enumerate() {
-        html.text("h3", measurement.title.as_deref().unwrap_or(measurement.id.as_str()));
+        let which = subject::which(measurement, quantity_words(measurement.quantity.kind));
+        let title = measurement.title.as_ref().map(|title| format!("{title}: ")).unwrap_or_default();
+        html.text("h3", &format!("{title}{which}"));
         write_measurement(html, document, measurement);
         write_drawn(html, pictures.measurements.get(index));
     }

@@ -118,6 +118,48 @@ impl Scale {
     }
 }
 
+/// Ticks nearer to each other than this share of a scale have no room for their labels.
+const LABEL_ROOM: f64 = 0.08;
+
+impl Scale {
+    /// About `count` named numbers, and the ends where no tick is near: of a colour bar a reader wants the extremes.
+    pub(super) fn ticks_with_ends(&self, count: usize) -> Vec<Tick> {
+        let mut ticks = self.ticks(count);
+        for (end, value) in [(0.0, self.value(0.0)), (1.0, self.value(1.0))] {
+            let is_free = ticks.iter().all(|tick| (self.position(tick.value) - end).abs() > LABEL_ROOM);
+            if is_free {
+                ticks.push(Tick { value, label: super::html::significant(value, 3) });
+            }
+        }
+        ticks
+    }
+
+    /// At most about `most` of these numbers, as evenly as they lie: that nearest to 0, and outwards from it on both
+    /// sides each next one that has room.
+    pub(super) fn ticks_among(&self, numbers: &[f64], most: usize) -> Vec<Tick> {
+        let room = 1.0 / most.max(1) as f64;
+        let by_size = |a: &usize, b: &usize| numbers[*a].abs().total_cmp(&numbers[*b].abs());
+        let Some(middle) = (0..numbers.len()).min_by(by_size) else { return Vec::new() };
+        let outwards = |chosen: &mut Vec<f64>, number: f64| {
+            let last = chosen.last().copied().unwrap_or(numbers[middle]);
+            if (self.position(number) - self.position(last)).abs() >= room - 1e-9 {
+                chosen.push(number);
+            }
+        };
+        let (mut up, mut down) = (Vec::new(), Vec::new());
+        numbers[middle..].iter().for_each(|number| outwards(&mut up, *number));
+        numbers[..middle].iter().rev().for_each(|number| outwards(&mut down, *number));
+        let chosen = down.into_iter().rev().chain([numbers[middle]]).chain(up);
+        chosen.map(|value| Tick { value, label: angle_label(value) }).collect()
+    }
+}
+
+/// An angle to a hundredth of a degree, without needless zeros.
+fn angle_label(degrees: f64) -> String {
+    let rounded = (degrees * 100.0).round() / 100.0;
+    if rounded == 0.0 { "0".to_owned() } else { rounded.to_string().replacen('-', "\u{2212}", 1) }
+}
+
 /// Smallest and largest of the finite numbers.
 pub(super) fn extent(values: impl IntoIterator<Item = f64>) -> Option<(f64, f64)> {
     values.into_iter().filter(|value| value.is_finite()).fold(None, |extent, value| {
@@ -228,6 +270,27 @@ mod tests {
             assert_eq!(last.label, top, "{reaching:?}");
             assert!((reaching.position(last.value) - 1.0).abs() < 1e-9, "{reaching:?}");
         }
+    }
+
+    #[test]
+    fn the_ends_of_a_colour_bar_are_named_where_no_tick_is_near() {
+        let names = |scale: Scale| scale.ticks_with_ends(8).into_iter().map(|tick| tick.label).collect::<Vec<_>>();
+        assert_eq!(names(Scale::Logarithmic { from: 0.19, to: 4.6 }), ["0.2", "0.5", "1", "2", "4.60"]);
+        assert_eq!(names(Scale::Logarithmic { from: 0.19, to: 5.2 }), ["0.2", "0.5", "1", "2", "5"]);
+        assert_eq!(names(Scale::Linear { from: -2.9, to: 2.9 }).len(), 7);
+    }
+
+    #[test]
+    fn ticks_among_angles_are_measured_angles() {
+        let names = |step: i32, count: i32| {
+            let angles: Vec<f64> = (-count..=count).map(|k| f64::from(k * step)).collect();
+            let end = f64::from(step) * (f64::from(count) + 0.5);
+            let ticks = Scale::Linear { from: -end, to: end }.ticks_among(&angles, 12);
+            ticks.into_iter().map(|tick| tick.value).collect::<Vec<_>>()
+        };
+        assert_eq!(names(15, 5), [-75.0, -60.0, -45.0, -30.0, -15.0, 0.0, 15.0, 30.0, 45.0, 60.0, 75.0]);
+        assert_eq!(names(10, 8), [-80.0, -60.0, -40.0, -20.0, 0.0, 20.0, 40.0, 60.0, 80.0]);
+        assert_eq!(Scale::Linear { from: 0.0, to: 1.0 }.ticks_among(&[], 12), []);
     }
 
     #[test]

@@ -24,7 +24,7 @@ pub fn scan_figures(document: &Document, measurement: &Measurement) -> Drawn {
         return drawn;
     }
     match map(document, measurement) {
-        Ok(map) => drawn.take_maps(&map, &subject::of_sample(document, measurement)),
+        Ok(map) => drawn.take_maps(&map, &subject::of_sample(document, measurement), ""),
         Err(error) => drawn.not_drawn.push(error.in_full()),
     }
     drawn.not_drawn.push(format!(

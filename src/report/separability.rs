@@ -27,7 +27,7 @@ pub(super) fn mean_over_viewing(check: &Separability, subject: &str, quantity: &
         x: "incidence angle θᵢ (degrees, signed)".to_owned(),
         y: format!("mean {quantity}"),
         caption: "The average over viewing directions against the incidence angle, with the cosine fitted to it: a \
-                  Lambertian surface follows it. An error bar without a cap goes on beyond the frame."
+                  Lambertian surface follows it. An error bar that ends in an arrow goes on beyond the frame."
             .to_owned(),
     };
     dots_and_curve(&points, Some(&curve), &text)
@@ -49,7 +49,8 @@ pub(super) fn mean_over_incidence(check: &Separability, subject: &str) -> Result
         name: "mean-over-incidence".to_owned(),
         title: format!("{subject}: averaged over incidence"),
         subtitle: format!(
-            "r.m.s. departure from a constant {:.2} %; best product f(θᵢ) g(θᵥ) leaves {:.2} %",
+            "r.m.s. departure from a constant {:.2} % of the mean; the best product f(θᵢ) g(θᵥ) leaves {:.2} % of the \
+             r.m.s. of all values",
             100.0 * check.constancy_relative_rms,
             100.0 * check.rank_one_relative_rms
         ),
@@ -57,7 +58,8 @@ pub(super) fn mean_over_incidence(check: &Separability, subject: &str) -> Result
         y: "mean of value / fitted cosine (unit 1)".to_owned(),
         caption:
             "The average over incidence directions, after division by the fitted cosine, against the viewing angle: \
-                  a Lambertian surface looks the same from everywhere. An error bar without a cap goes on beyond the frame."
+                  a Lambertian surface looks the same from everywhere. An error bar that ends in an arrow goes on beyond the \
+                  frame."
                 .to_owned(),
     };
     dots_and_curve(&points, Some(&curve), &text)

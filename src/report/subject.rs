@@ -16,6 +16,11 @@ pub(super) fn of_measurement(document: &Document, measurement: &Measurement) -> 
     with_origin(title.unwrap_or_else(|| measurement.id.to_string()), sample)
 }
 
+/// A measurement among the others of its document, by role, id and quantity.
+pub(super) fn which(measurement: &Measurement, quantity: &str) -> String {
+    format!("{} `{}`, {quantity}", measurement.role, measurement.id)
+}
+
 fn sample_of<'a>(document: &'a Document, measurement: &Measurement) -> Option<&'a Sample> {
     measurement.sample.as_ref().and_then(|id| document.samples.iter().find(|sample| sample.id == *id))
 }

@@ -44,10 +44,10 @@ pub fn surface(map: &AngleMap, title: &str) -> Result<Figure, ReportError> {
     let view = View::new(map, scale, labels.height(WIDTH - 100.0));
     let mut canvas = Canvas::new(WIDTH, view.bottom() + 92.0);
     draw_titles(&mut canvas, WIDTH - 100.0, &labels);
-    view.draw_floor(&mut canvas);
+    view.draw_floor(&mut canvas, map);
     view.draw_facets(&mut canvas, map);
     view.draw_sides(&mut canvas, map);
-    view.draw_axes(&mut canvas, &with_unit(&map.label, &map.unit));
+    view.draw_axes(&mut canvas, map);
     draw_legend(&mut canvas, view.bottom() + 72.0);
     let caption = format!(
         "{title}: {} as a surface over both signed in-plane angles. The retro direction was not measured; there the \
@@ -102,13 +102,13 @@ impl View {
         ((self.centre.0 + HALF_SIDE * across, self.centre.1 - rise), away)
     }
 
-    fn draw_floor(&self, canvas: &mut Canvas) {
+    fn draw_floor(&self, canvas: &mut Canvas, map: &AngleMap) {
         let (ends_i, ends_v) = (ends(&self.theta_i), ends(&self.theta_v));
-        for tick in self.theta_i.ticks(4) {
+        for tick in self.theta_i.ticks_among(&map.theta_i_deg, 9) {
             let line = ends_v.map(|v| self.point(tick.value, v, 0.0).0);
             canvas.line(line[0], line[1], GRID, 1.0);
         }
-        for tick in self.theta_v.ticks(4) {
+        for tick in self.theta_v.ticks_among(&map.theta_v_deg, 9) {
             let line = ends_i.map(|i| self.point(i, tick.value, 0.0).0);
             canvas.line(line[0], line[1], GRID, 1.0);
         }
@@ -164,18 +164,18 @@ impl View {
         Some(facet)
     }
 
-    fn draw_axes(&self, canvas: &mut Canvas, label: &str) {
+    fn draw_axes(&self, canvas: &mut Canvas, map: &AngleMap) {
         let ([i_from, i_to], [v_from, v_to]) = (ends(&self.theta_i), ends(&self.theta_v));
         let corner = |i: f64, v: f64, up: f64| self.point(i, v, up).0;
         let (left, front, right) = (corner(i_from, v_from, 0.0), corner(i_to, v_from, 0.0), corner(i_to, v_to, 0.0));
         canvas.line(left, front, INK, 1.2);
         canvas.line(front, right, INK, 1.2);
         canvas.line(left, corner(i_from, v_from, 1.0), INK, 1.2);
-        for tick in self.theta_i.ticks(8) {
+        for tick in self.theta_i.ticks_among(&map.theta_i_deg, 9) {
             let (x, y) = corner(tick.value, v_from, 0.0);
             canvas.text((x - 6.0, y + 18.0), &tick.label, Style::new(TICK_SIZE, TextAnchor::End));
         }
-        for tick in self.theta_v.ticks(8) {
+        for tick in self.theta_v.ticks_among(&map.theta_v_deg, 9) {
             let (x, y) = corner(i_to, tick.value, 0.0);
             canvas.text((x + 6.0, y + 18.0), &tick.label, Style::new(TICK_SIZE, TextAnchor::Start));
         }
@@ -188,7 +188,7 @@ impl View {
         canvas.text((24.0, bottom - 2.0), "incidence θᵢ (degrees) ↘", Style::new(LABEL_SIZE, TextAnchor::Start));
         canvas.text((WIDTH - 24.0, bottom - 2.0), "↗ viewing θᵥ (degrees)", Style::new(LABEL_SIZE, TextAnchor::End));
         let kind = if self.height.is_logarithmic() { ", logarithmic" } else { "" };
-        let text = format!("↑ height and colour: {label}{kind}");
+        let text = format!("↑ height and colour: {}{kind}", with_unit(&map.label, &map.unit));
         canvas.text((24.0, bottom + 34.0), &text, Style::new(LABEL_SIZE, TextAnchor::Start));
     }
 }

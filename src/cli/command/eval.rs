@@ -9,12 +9,25 @@ use serde::{Deserialize, Serialize};
 use crate::cli::exit::{CommandResult, Outcome};
 use crate::cli::output::{print_json, print_message, print_text};
 use crate::container;
-use crate::dataset::predict;
+use crate::dataset::{Document, Model, predict};
 use crate::import::{GeometryRow, read_geometries};
 use crate::quantity::Reference;
 use crate::terms::{Factors, Term, TermKind, TorranceSparrow};
 
-/// Evaluate a model: Y/E of its elastic terms, one row per geometry.
+/// What `value` is.
+const FACTOR_MEANING: &str = "Y/E, the sum of the elastic terms: pi times the radiance over the irradiance of a surface across \
+    the beam, without a reference";
+const OTHER_MEANING: &str = "the sum of the elastic terms in the unit of the fitted number, which is no ratio";
+
+/// Evaluate a model: Y/E of its elastic terms, one row per geometry
+///
+/// The column `value` is the sum of the elastic terms (lambertian, torrance-sparrow) without a reference: a Lambertian term
+/// of albedo a gives a cos(theta_i), exactly 0 at 90 degrees. It is Y/E (pi times the radiance over the irradiance of a
+/// surface across the beam) where the model was fitted to a factor, and in the unit of the fitted number where it was
+/// fitted to a radiance. For the factor against a reference divide by what that received: cos(theta_i) in the same
+/// geometry, cos(theta_ref) in a fixed one. A model of a band gives the value of that band; one of many wavelengths gives
+/// a row for each that has a model (`emission_nm`), and those without are named on standard error. Luminescent terms have
+/// a column of their own.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Arguments {
     /// The model: FILE.bbrf#ID (FILE.bbrf where it holds one model), or a JSON file {"terms": [...]}
@@ -43,7 +56,24 @@ pub(crate) struct ModelJson {
 /// What `--json` prints.
 #[derive(Debug, Serialize, JsonSchema)]
 pub(crate) struct EvalResult {
+    /// What `value` is.
+    value: ValueMeaning,
     rows: Vec<EvalRow>,
+}
+
+/// What the column `value` holds.
+#[derive(Debug, Serialize, JsonSchema)]
+struct ValueMeaning {
+    /// In words.
+    meaning: String,
+    /// The reference it is relative to: always `none`.
+    reference: String,
+    /// Its unit, `1` for none.
+    unit: String,
+    /// How a spectrum became the number that the model was fitted to, as in `band:500-620`; `null` for a model in JSON.
+    reduction: Option<String>,
+    /// Wavelengths of the model's measurement, nm, at which it has no value.
+    without_model_nm: Vec<f64>,
 }
 
 /// One geometry and emission value.
@@ -56,9 +86,9 @@ struct EvalRow {
     phi_v_deg: f64,
     /// Emission wavelength, where the model has several.
     emission_nm: Option<f64>,
-    /// Y/E of the elastic terms; `null` where a term has no value.
+    /// Sum of the elastic terms, as `value` beside `rows` says; `null` where a term has no value.
     value: Option<f64>,
-    /// Y/E of the luminescent terms, where the model has any.
+    /// Sum of the luminescent terms likewise, where the model has any.
     luminescent: Option<f64>,
     #[serde(rename = "phi_rad")]
     phi: Option<f64>,
@@ -75,8 +105,14 @@ struct EvalRow {
 /// Terms per emission value, with its wavelength where there are several.
 type Bands = Vec<(Option<f64>, Vec<Term>)>;
 
+/// A model and what its values mean.
+struct Loaded {
+    bands: Bands,
+    value: ValueMeaning,
+}
+
 pub(crate) fn run(arguments: &Arguments) -> CommandResult {
-    let bands = load(&arguments.model)?;
+    let Loaded { bands, value } = load(&arguments.model)?;
     let specular = match (arguments.factors, bands.first()) {
         (true, Some((_, terms))) => Some(only_specular(terms)?),
         _ => None,
@@ -84,6 +120,13 @@ pub(crate) fn run(arguments: &Arguments) -> CommandResult {
     let geometries = read_geometries(&arguments.geometry).map_err(|error| miette!("{error}"))?;
     let mut rows = Vec::with_capacity(geometries.len() * bands.len());
     let mut undefined = 0_usize;
+    if let [first, .., last] | [first @ last] = value.without_model_nm[..] {
+        let count = value.without_model_nm.len();
+        print_message(&format!(
+            "bbrf: {}: no row for {count} wavelengths of the measurement from {first} to {last} nm, which have no model",
+            arguments.model
+        ));
+    }
     for geometry in &geometries {
         for (emission_nm, terms) in &bands {
             let row = evaluate(geometry, *emission_nm, terms, specular);
@@ -96,14 +139,14 @@ pub(crate) fn run(arguments: &Arguments) -> CommandResult {
         }
     }
     if arguments.json {
-        print_json("bbrf:eval:1", &EvalResult { rows })?;
+        print_json("bbrf:eval:1", &EvalResult { value, rows })?;
     } else {
         print_text(&csv(&rows, arguments.factors))?;
     }
     Ok(if undefined == 0 { Outcome::Done } else { Outcome::Failed })
 }
 
-fn load(model: &str) -> Result<Bands, miette::Report> {
+fn load(model: &str) -> Result<Loaded, miette::Report> {
     let (path, id) = match model.rsplit_once('#') {
         Some((path, id)) => (path, Some(id)),
         None => (model, None),
@@ -123,15 +166,34 @@ fn load(model: &str) -> Result<Bands, miette::Report> {
         (None, _) => return Err(miette!("{path}: holds several models ({}); name one as {path}#ID", ids())),
     };
     let nm = model.emission.wavelengths();
-    (0..model.emission.len())
+    let bands = (0..model.emission.len())
         .map(|emission| {
             let terms = model.terms_at(emission).map_err(|error| miette!("{path}, model `{}`: {error}", model.id))?;
             Ok((nm.map(|nm| nm[emission]), terms))
         })
-        .collect()
+        .collect::<Result<Bands, miette::Report>>()?;
+    Ok(Loaded { bands, value: meaning(&document, model) })
 }
 
-fn from_json(path: &str, bytes: &[u8]) -> Result<Bands, miette::Report> {
+fn meaning(document: &Document, model: &Model) -> ValueMeaning {
+    let measurement = document.measurement(model.measurement.as_str());
+    let measured = measurement.and_then(|one| one.emission.wavelengths()).unwrap_or(&[]);
+    let without = match model.emission.wavelengths() {
+        Some(nm) => measured.iter().copied().filter(|one| !nm.contains(one)).collect(),
+        None => Vec::new(),
+    };
+    let is_factor = measurement.is_none_or(|one| one.quantity.kind.is_factor());
+    let meaning = if is_factor { FACTOR_MEANING } else { OTHER_MEANING };
+    ValueMeaning {
+        meaning: meaning.to_owned(),
+        reference: Reference::None.to_string(),
+        unit: model.unit.clone(),
+        reduction: Some(model.reduction.clone()),
+        without_model_nm: without,
+    }
+}
+
+fn from_json(path: &str, bytes: &[u8]) -> Result<Loaded, miette::Report> {
     let model: ModelJson = serde_json::from_slice(bytes).map_err(|error| {
         miette!(
             "{path}: {error}; expected {{\"terms\": [{{\"kind\": \"lambertian\", \"albedo\": 0.8}}, ...]}} with the terms \
@@ -144,7 +206,14 @@ fn from_json(path: &str, bytes: &[u8]) -> Result<Bands, miette::Report> {
     if model.terms.is_empty() {
         return Err(miette!("{path}: `terms` is empty; a model needs at least one term"));
     }
-    Ok(vec![(None, model.terms)])
+    let value = ValueMeaning {
+        meaning: FACTOR_MEANING.to_owned(),
+        reference: Reference::None.to_string(),
+        unit: "1".to_owned(),
+        reduction: None,
+        without_model_nm: Vec::new(),
+    };
+    Ok(Loaded { bands: vec![(None, model.terms)], value })
 }
 
 fn only_specular(terms: &[Term]) -> Result<TorranceSparrow, miette::Report> {

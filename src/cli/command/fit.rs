@@ -17,7 +17,7 @@ use crate::cli::progress;
 use crate::container;
 use crate::dataset::{Document, FittedParameter, Measurement, Model, Reduction, Role, Step};
 use crate::fit::{FitOptions, fit_measurement};
-use crate::quantity::Reference;
+use crate::quantity::{Reference, rounded_with_uncertainty};
 use crate::terms::{Denominator, Distribution, TermKind};
 
 /// Fit Lambertian and Torrance-Sparrow terms, without a starting point.
@@ -136,12 +136,16 @@ struct ResidualResult {
     left_out: u64,
 }
 
-/// The numbers of the separability check without its curves.
+/// The numbers of the separability check without its curves: is the value a function of incidence times one of viewing?
 #[derive(Debug, Serialize, JsonSchema)]
 struct SeparabilityResult {
+    /// Amplitude of the cosine fitted to the average over viewing.
     cosine_amplitude: f64,
+    /// R.m.s. departure of that average from the cosine, relative to its amplitude.
     cosine_relative_rms: f64,
+    /// R.m.s. departure of the average over incidence from its mean, relative to that mean.
     constancy_relative_rms: f64,
+    /// R.m.s. of what the best product of the two leaves, relative to the r.m.s. of all values.
     rank_one_relative_rms: f64,
 }
 
@@ -327,7 +331,10 @@ fn fitted_model(file: &Path, model: &Model, seconds: f64) -> FittedModel {
 fn text(model: &FittedModel) -> String {
     let mut lines = vec![format!(
         "{}: measurement `{}`, {}, reference {}",
-        model.file, model.measurement, model.reduction, model.reference
+        model.file,
+        model.measurement,
+        reduction_in_words(model),
+        model.reference
     )];
     for term in &model.terms {
         for (name, parameter) in &term.parameters {
@@ -347,8 +354,11 @@ fn text(model: &FittedModel) -> String {
     ));
     if let Some(s) = &model.separability {
         lines.push(format!(
-            "  separable: average over viewing departs {:.1} % from a cosine, average over incidence {:.1} % from a \
-             constant, best product leaves {:.1} %",
+            "  separability, as r.m.s. departures\n\
+             {0:20}average over viewing from a cosine: {1:.1} % of its amplitude\n\
+             {0:20}average over incidence from a constant: {2:.1} % of its mean\n\
+             {0:20}all values from the best product of both: {3:.1} % of their r.m.s.",
+            "",
             100.0 * s.cosine_relative_rms,
             100.0 * s.constancy_relative_rms,
             100.0 * s.rank_one_relative_rms
@@ -361,6 +371,16 @@ fn text(model: &FittedModel) -> String {
     lines.join("\n")
 }
 
+/// What was fitted, for people: a reduction to `none` keeps every emission value.
+fn reduction_in_words(model: &FittedModel) -> String {
+    match (model.reduction.as_str(), &model.emission_nm) {
+        ("none", Some(nm)) if nm.len() == 1 => format!("its one wavelength with a model, {} nm", nm[0]),
+        ("none", Some(nm)) => format!("every wavelength ({} with a model)", nm.len()),
+        ("none", None) => "its one band".to_owned(),
+        (reduction, _) => reduction.to_owned(),
+    }
+}
+
 fn parameter_line(term: TermKind, name: &str, parameter: &ParameterResult) -> String {
     let unit = if parameter.unit == "1" { String::new() } else { format!(" {}", parameter.unit) };
     let shared = match &parameter.shared_relative_uncertainty {
@@ -369,8 +389,10 @@ fn parameter_line(term: TermKind, name: &str, parameter: &ParameterResult) -> St
     };
     match (&parameter.value, &parameter.standard_uncertainty) {
         (NumberOrList::Number(value), NumberOrList::Number(sigma)) => {
-            let sigma = sigma.map_or("unknown".to_owned(), |sigma| format!("{sigma:.2e}"));
-            format!("  {term:<18}{name:<18}{:.6}{unit} ± {sigma}{shared}", value.unwrap_or(f64::NAN))
+            let value = value.unwrap_or(f64::NAN);
+            let known = sigma.and_then(|sigma| rounded_with_uncertainty(value, sigma));
+            let known = known.unwrap_or_else(|| format!("{value:.6} ± unknown"));
+            format!("  {term:<18}{name:<18}{known}{unit}{shared}")
         }
         (NumberOrList::List(values), _) => {
             let known = values.iter().flatten();

@@ -80,7 +80,7 @@ impl<'a> WeightedSum<'a> {
         Ok(Self { measurement, columns, weights, ratio, kind, band, name, notes })
     }
 
-    pub(super) fn reduced(self) -> Result<Reduced, ReduceError> {
+    pub(super) fn reduced(mut self) -> Result<Reduced, ReduceError> {
         let count = self.measurement.acquisitions.len();
         let rows: Vec<usize> = (0..count)
             .filter(|&row| geometry_of(self.measurement, row).is_some() && self.value(row).is_finite())
@@ -88,6 +88,7 @@ impl<'a> WeightedSum<'a> {
         if rows.is_empty() {
             return Err(nothing_left(self.measurement, &self.name));
         }
+        self.notes.extend(self.truncated_rows());
         let has_sigma = self.measurement.uncertainty.standard.is_some();
         let shape = (1, rows.len());
         Ok(Reduced {
@@ -103,6 +104,24 @@ impl<'a> WeightedSum<'a> {
             reduction: self.name,
             notes: self.notes,
             rows,
+        })
+    }
+
+    /// Rows that are lost because a part of their band is below detection: the dark ones, so that a fit sees too bright a
+    /// surface.
+    fn truncated_rows(&self) -> Option<String> {
+        let is_below =
+            |row: usize| self.columns.iter().any(|&k| self.measurement.flags_at(row, k).contains(Flag::BelowDetection));
+        let placed =
+            || (0..self.measurement.acquisitions.len()).filter(|&row| geometry_of(self.measurement, row).is_some());
+        let lost = placed().filter(|&row| is_below(row) && !self.value(row).is_finite()).count();
+        (lost > 0).then(|| {
+            format!(
+                "{lost} of {} rows are left out because they are below detection at some wavelength of the band: what is left \
+                 is truncated, the darkest rows are missing and amplitudes may be too high; a narrower band with more \
+                 light keeps these rows",
+                placed().count()
+            )
         })
     }
 
