@@ -107,7 +107,7 @@ pub(super) fn decode_fields<T: Description>(group: &Group, path: &str, id: Optio
 pub(super) fn decode_attributes<T: Description>(attributes: &Attributes, path: &str) -> Result<T, ReadError> {
     let mut fields = Map::new();
     for property in T::fields() {
-        read_attribute(&mut fields, attributes, path, &property)?;
+        read_attribute(&mut fields, attributes, path, property)?;
     }
     from_json(fields, path)
 }
