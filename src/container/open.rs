@@ -86,6 +86,7 @@ pub struct Inspection {
     /// Encodings that the standard does not use and some reader cannot read.
     pub unusual: Vec<Encoded>,
     /// The document as it would be written.
+    #[cfg(feature = "write")]
     pub(super) canonical: Option<Canonical>,
     /// What differs from how the document would be written.
     pub mismatches: Vec<Mismatch>,
@@ -114,6 +115,7 @@ pub fn inspect(bytes: &[u8], limits: &Limits) -> Result<Inspection, ReadError> {
         document,
         stored_digest,
         computed_digest,
+        #[cfg(feature = "write")]
         canonical,
         mismatches,
     })
