@@ -168,7 +168,7 @@ fn eval_says_what_its_value_is_and_which_wavelengths_have_none() {
     let rows = result["rows"].as_array().unwrap();
     assert!(rows[..2 * 94].iter().all(|row| row["value"] == 0.0), "at 90 degrees a Lambertian term is exactly 0");
     assert!(rows[2 * 94]["value"].as_f64().unwrap() > 0.0);
-    bbrf().args(["eval", "--help"]).assert().success().stdout(contains("without a reference"));
+    bbrf().args(["eval", "--help"]).assert().success().stdout(contains("The column `value` is the sum"));
 }
 
 #[test]
