@@ -61,7 +61,7 @@ $(VENV)/bench-ready: $(VENV)/ready benches/requirements.txt
 	touch $@
 
 bench: $(CMAKE_READY) $(VENV)/bench-ready ## Every figure in the README, measured here and now.
-	BBRF_PYTHON=$(VENV)/bin/python $(CARGO) bench --locked --bench fit --bench archive
+	BBRF_PYTHON=$(VENV)/bin/python $(CARGO) bench --locked --bench fit --bench archive --bench validate
 
 soak: $(CMAKE_READY) $(VENV)/ready ## Long runs: ten thousand cases of every property, two thousand scans.
 	BBRF_PROPTEST_CASES=10000 BBRF_TRIALS=2000 BBRF_PYTHON=$(VENV)/bin/python $(CARGO) test --locked --release
