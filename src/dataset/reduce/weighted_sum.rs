@@ -13,7 +13,7 @@ const BAND_SHARE_OF_PEAK: f64 = 0.1;
 const NEGLIGIBLE_SHARE: f64 = 1e-3;
 /// The default band ends where more than this share of the rows has no usable value: each wavelength that a row lacks
 /// costs the row.
-const MOST_MISSING: f64 = 0.1;
+const MOST_MISSING: f64 = 0.01;
 
 /// A weighted sum over wavelengths, the same wavelengths for every row.
 pub(super) struct WeightedSum<'a> {
