@@ -9,7 +9,7 @@ use std::path::Path;
 use std::process::Command;
 use std::time::{Duration, Instant};
 
-use bbrf::container::write_file;
+use bbrf::container::{FileBytes, write_file};
 use bbrf::dataset::{Acquisition, Document, Id, Measurement, Role};
 use bbrf::quantity::*;
 use bbrf::validate::validate_bytes;
@@ -62,7 +62,7 @@ fn document(megabytes: usize) -> Document {
         ..Quantity::absolute(QuantityKind::RadianceFactor, Part::Total)
     };
     let mut measurement = Measurement {
-        uncertainty: Uncertainty { standard: Some(sigma), ..Uncertainty::default() },
+        uncertainty: Uncertainty { standard: Some(sigma.into_shared()), ..Uncertainty::default() },
         ..Measurement::new(Id::new("scan").unwrap(), Role::Sample, quantity, emission, acquisitions, values)
     };
     measurement.state_directions();
@@ -96,8 +96,7 @@ fn main() {
             }
             for (pool, times) in pools.iter().zip(&mut times[1..]) {
                 let begin = Instant::now();
-                let bytes = std::fs::read(&file).unwrap();
-                let report = pool.install(|| validate_bytes(&bytes));
+                let report = pool.install(|| validate_bytes(FileBytes::read(&file).unwrap()));
                 times.push(begin.elapsed());
                 black_box(report);
             }

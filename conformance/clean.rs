@@ -61,7 +61,7 @@ fn with_noise(values: Array2<f64>, relative: f64) -> (Array2<f64>, Uncertainty) 
     });
     let statement = Statement { evaluation: Some(EvaluationType::A), ..Statement::default() };
     let components = vec![Component::new("certified factor", vec![0.002], CorrelatedOver::All)];
-    (noisy, Uncertainty { standard: Some(standard), statement, components })
+    (noisy, Uncertainty { standard: Some(standard.into_shared()), statement, components })
 }
 
 const TERMS: [&str; 4] = ["albedo", "intensity", "roughness", "refractive_index"];
@@ -210,7 +210,7 @@ fn raw() -> Measurement {
 }
 
 fn extension() -> Extension {
-    let temperatures = Dataset::new(Array::vector(Data::F64(vec![23.0, 23.1]))).with_text("units", "degC");
+    let temperatures = Dataset::new(Array::vector(Data::F64(vec![23.0, 23.1].into()))).with_text("units", "degC");
     let content = Group {
         attributes: [("firmware".to_owned(), Array::text("3.2"))].into(),
         datasets: vec![("temperature".to_owned(), temperatures)],
@@ -341,7 +341,7 @@ fn model(document: &Document) -> Model {
         emission: data.emission.clone(),
         terms: fitted_terms(),
         covariance_parameters: names.map(str::to_owned).to_vec(),
-        covariance,
+        covariance: covariance.into_shared(),
         residuals: Residuals { rms: 0.0, reduced_chi_square: 0.0, count: 0, left_out: 0 },
         converged: true,
         method: "made".to_owned(),

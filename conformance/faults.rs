@@ -48,7 +48,7 @@ fn bandpass(measurement: &mut Measurement) -> (&mut Vec<f64>, &mut BandpassShape
     }
 }
 
-fn sigma(measurement: &mut Measurement) -> &mut ndarray::Array2<f64> {
+fn sigma(measurement: &mut Measurement) -> &mut ndarray::ArcArray2<f64> {
     measurement.uncertainty.standard.as_mut().expect("the clean measurements have uncertainties")
 }
 
@@ -107,7 +107,7 @@ pub const FAULTS: &[Fault] = &[
     t("structure.version-stated", "not-a-version", |tree| set(tree, "bbrf_version", "one")),
     t("structure.version-stated", "one-digit", |tree| set(tree, "bbrf_version", "1")),
     t("structure.version-stated", "a-number", |tree| {
-        tree.attributes.insert("bbrf_version".into(), Array::scalar(Data::F64(vec![1.0])));
+        tree.attributes.insert("bbrf_version".into(), Array::scalar(Data::F64(vec![1.0].into())));
     }),
     t("structure.major-version", "two", |tree| set(tree, "bbrf_version", "2.0")),
     t("structure.major-version", "zero", |tree| set(tree, "bbrf_version", "0.9")),
@@ -146,15 +146,15 @@ pub const FAULTS: &[Fault] = &[
         replace(group(tree, "measurement/scan"), "value", Array { shape: vec![43, 5], data: texts });
     }),
     t("structure.readable", "values-of-one-axis", |tree| {
-        replace(group(tree, "measurement/scan"), "value", Array::vector(Data::F64(vec![0.5; 215])));
+        replace(group(tree, "measurement/scan"), "value", Array::vector(Data::F64(vec![0.5; 215].into())));
     }),
     t("structure.readable", "angles-one-short", |tree| {
-        replace(group(tree, "measurement/scan"), "theta_i", Array::vector(Data::F64(vec![0.0; 42])));
+        replace(group(tree, "measurement/scan"), "theta_i", Array::vector(Data::F64(vec![0.0; 42].into())));
     }),
     t("structure.readable", "description-of-the-wrong-type", |tree| set(group(tree, "instrument/radiometer"), "distance_mm", "800 mm")),
     t("structure.readable", "description-not-finite", |tree| {
         let instrument = group(tree, "instrument/radiometer");
-        instrument.attributes.insert("distance_mm".into(), Array::scalar(Data::F64(vec![f64::NAN])));
+        instrument.attributes.insert("distance_mm".into(), Array::scalar(Data::F64(vec![f64::NAN].into())));
     }),
     t("structure.readable", "half-a-band", |tree| {
         let model = group(tree, "model/fit");
@@ -165,20 +165,20 @@ pub const FAULTS: &[Fault] = &[
     }),
     t("structure.readable", "term-of-another-name", |tree| set(group(tree, "model/fit/term_1"), "kind", "phong")),
     t("structure.readable", "truth-of-two", |tree| {
-        group(tree, "sample/paint").attributes.insert("simulated".into(), Array::scalar(Data::U8(vec![2])));
+        group(tree, "sample/paint").attributes.insert("simulated".into(), Array::scalar(Data::U8(vec![2].into())));
     }),
     t("structure.readable", "identifier-with-a-space", |tree| {
         let samples = group(tree, "sample");
         samples.groups[0].0 = "the paint".to_owned();
     }),
     t("structure.shapes", "values-of-another-shape", |tree| {
-        replace(group(tree, "measurement/scan"), "value", Array { shape: vec![1, 5], data: Data::F64(vec![1.0; 5]) });
+        replace(group(tree, "measurement/scan"), "value", Array { shape: vec![1, 5], data: Data::F64(vec![1.0; 5].into()) });
     }),
     t("structure.shapes", "flags-of-another-shape", |tree| {
-        replace(group(tree, "measurement/scan"), "value_flag", Array { shape: vec![43, 1], data: Data::U16(vec![0; 43]) });
+        replace(group(tree, "measurement/scan"), "value_flag", Array { shape: vec![43, 1], data: Data::U16(vec![0; 43].into()) });
     }),
     t("structure.shapes", "uncertainties-of-another-shape", |tree| {
-        replace(group(tree, "measurement/scan"), "value_u", Array { shape: vec![5, 43], data: Data::F64(vec![0.1; 215]) });
+        replace(group(tree, "measurement/scan"), "value_u", Array { shape: vec![5, 43], data: Data::F64(vec![0.1; 215].into()) });
     }),
     t("structure.attributes", "flag-meanings-in-another-order", |tree| {
         set_on(group(tree, "measurement/scan"), "value_flag", "flag_meanings", Array::text("one two"));
@@ -187,10 +187,10 @@ pub const FAULTS: &[Fault] = &[
         set_on(group(tree, "measurement/scan"), "value", "coordinates", Array::text("theta_i phi_i"));
     }),
     t("structure.attributes", "flag-masks-shifted", |tree| {
-        set_on(group(tree, "measurement/scan"), "value_flag", "flag_masks", Array::vector(Data::U16(vec![2, 4, 8])));
+        set_on(group(tree, "measurement/scan"), "value_flag", "flag_masks", Array::vector(Data::U16(vec![2, 4, 8].into())));
     }),
     t("structure.unknown", "a-dataset", |tree| {
-        let extra = Dataset::new(Array::vector(Data::F64(vec![1.0])));
+        let extra = Dataset::new(Array::vector(Data::F64(vec![1.0].into())));
         group(tree, "measurement/scan").datasets.push(("temperature".into(), extra));
     }),
     t("structure.unknown", "an-attribute", |tree| set(group(tree, "measurement/scan"), "weather", "sunny")),
@@ -230,7 +230,7 @@ pub const FAULTS: &[Fault] = &[
         set_on(group(tree, "measurement/scan"), "wavelength_emission", "units", Array::text("um"));
     }),
     t("quantity.si-unit", "another-factor", |tree| {
-        set_on(group(tree, "measurement/density"), "value", "unit_si_factor", Array::scalar(Data::F64(vec![1.0])));
+        set_on(group(tree, "measurement/density"), "value", "unit_si_factor", Array::scalar(Data::F64(vec![1.0].into())));
     }),
     t("quantity.si-unit", "no-exponents", |tree| {
         group(tree, "measurement/density").dataset_mut("value").expect("values").attributes.remove("unit_si_exponents");

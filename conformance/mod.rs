@@ -95,7 +95,7 @@ fn clean_tree() -> Group {
 }
 
 /// A dataset's numbers, to change them.
-pub fn numbers<'a>(group: &'a mut Group, name: &str) -> &'a mut Vec<f64> {
+pub fn numbers<'a>(group: &'a mut Group, name: &str) -> &'a mut [f64] {
     match &mut group.dataset_mut(name).expect("the dataset").array.data {
         Data::F64(numbers) => numbers,
         other => panic!("{name} is {other:?}"),

@@ -82,7 +82,7 @@ fn what_a_later_version_adds_is_read_over_and_never_dropped() {
             scan(tree).attributes.insert("colour".into(), Array::text("red"));
         }),
         ("scan/hue", |tree| {
-            scan(tree).datasets.push(("hue".into(), Dataset::new(Array::vector(Data::F64(vec![1.0, 2.0])))));
+            scan(tree).datasets.push(("hue".into(), Dataset::new(Array::vector(Data::F64(vec![1.0, 2.0].into())))));
         }),
         ("receipts", |tree| {
             let provenance = tree.group_mut("provenance").unwrap();
@@ -109,7 +109,7 @@ fn damage_in_a_later_version_is_damage() {
     for at in ["value", "hue"] {
         let mut tree = document_tree(&conformance::clean()).unwrap();
         tree.attributes.insert("bbrf_version".into(), Array::text("1.7"));
-        scan(&mut tree).datasets.push(("hue".into(), Dataset::new(Array::vector(Data::F64(vec![1.0, 2.0])))));
+        scan(&mut tree).datasets.push(("hue".into(), Dataset::new(Array::vector(Data::F64(vec![1.0, 2.0].into())))));
         sign_tree(&mut tree);
         conformance::numbers(scan(&mut tree), at)[0] += 1e-9;
         let path = folder.path().join("changed.bbrf");

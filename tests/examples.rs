@@ -44,7 +44,7 @@ fn number(value: f64) -> Value {
     if value.is_nan() { Value::Null } else { value.into() }
 }
 
-fn matrix<T: Copy>(array: &ndarray::Array2<T>, json: impl Fn(T) -> Value) -> Value {
+fn matrix<T: Copy>(array: &ndarray::ArcArray2<T>, json: impl Fn(T) -> Value) -> Value {
     array.rows().into_iter().map(|row| row.iter().map(|value| json(*value)).collect::<Value>()).collect()
 }
 

@@ -36,7 +36,7 @@ fn assert_same_rows(document: &Document, measurement: &Measurement) -> (Document
         of.acquisitions.iter().map(plain).collect()
     };
     assert_eq!(rows(again), rows(measurement), "{}", measurement.id);
-    let bits = |values: &ndarray::Array2<f64>| values.mapv(|value| if value.is_nan() { 0 } else { value.to_bits() });
+    let bits = |values: &ndarray::ArcArray2<f64>| values.mapv(|value| if value.is_nan() { 0 } else { value.to_bits() });
     assert_eq!(bits(&again.values), bits(&measurement.values), "{}", measurement.id);
     assert_eq!(again.flags, measurement.flags);
     assert_eq!(again.uncertainty.standard.as_ref().map(bits), measurement.uncertainty.standard.as_ref().map(bits));
@@ -70,8 +70,8 @@ fn a_band_with_repeats_times_and_its_particulars() {
     let rows = band.acquisitions.len();
     band.id = documents::id("band");
     band.emission = EmissionAxis::Band { band: Some(Band { from_nm: 500.0, to_nm: 620.5 }) };
-    band.values = ndarray::Array2::from_shape_fn((rows, 1), |(row, _)| row as f64 / 7.0);
-    band.flags = ndarray::Array2::zeros((rows, 1));
+    band.values = ndarray::ArcArray2::from_shape_fn((rows, 1), |(row, _)| row as f64 / 7.0);
+    band.flags = ndarray::ArcArray2::zeros((rows, 1));
     (band.values[(0, 0)], band.flags[(0, 0)]) = (f64::NAN, Flag::Saturated.bit());
     band.uncertainty = Uncertainty::default();
     band.excitations = vec![Excitation {

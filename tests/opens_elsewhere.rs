@@ -51,7 +51,7 @@ fn h5py_netcdf4_and_xarray_show_what_we_wrote() {
     // What netCDF changes on the way: empty axes, empty texts, arrays of one.
     document.measurements.push(documents::measurement("empty", &[], 0));
     // Axes without scales, for which netCDF makes dimensions up.
-    let temperatures = Dataset::new(Array::vector(Data::F64(vec![23.0, 23.5, 24.0]))).with_text("units", "degC");
+    let temperatures = Dataset::new(Array::vector(Data::F64(vec![23.0, 23.5, 24.0].into()))).with_text("units", "degC");
     let content = Group {
         attributes: [("firmware".to_owned(), Array::text("3.2"))].into(),
         datasets: vec![("temperature".to_owned(), temperatures)],

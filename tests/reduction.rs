@@ -99,7 +99,7 @@ fn a_flagged_value_is_never_a_value() {
 fn the_scale_of_a_record_is_independent_between_rows_and_the_white_is_shared() {
     let mut document = scan();
     document.measurements[2].uncertainty = Uncertainty {
-        standard: Some(Array2::zeros((2, 3))),
+        standard: Some(ndarray::ArcArray2::zeros((2, 3))),
         components: vec![
             Component::new("record scale", vec![0.01], CorrelatedOver::Wavelengths),
             Component::new("certificate", vec![0.02], CorrelatedOver::All),
@@ -150,7 +150,7 @@ fn a_wavelength_that_the_floor_truncates_is_left_out_and_said() {
             &[400.0, 500.0],
             Array2::from_shape_fn((40, 2), |(_, column)| if column == 0 { signal } else { 100.0 }),
         );
-        measurement.uncertainty.standard = Some(Array2::ones((40, 2)));
+        measurement.uncertainty.standard = Some(ndarray::ArcArray2::ones((40, 2)));
         for row in 0..below {
             measurement.values[(row, 0)] = 1.0;
             measurement.flags[(row, 0)] = Flag::BelowDetection.bit();

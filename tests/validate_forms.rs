@@ -230,7 +230,7 @@ fn without_digests() -> Vec<u8> {
     sign_tree(&mut tree);
     tree.attributes.remove("digest");
     tree.attributes.insert("institution".to_owned(), Array::text("a hall"));
-    let notes = Dataset::new(Array::vector(Data::F64(vec![1.0, 2.0])));
+    let notes = Dataset::new(Array::vector(Data::F64(vec![1.0, 2.0].into())));
     tree.datasets.push(("notes".to_owned(), notes));
     tree_bytes(&tree).unwrap()
 }
@@ -251,7 +251,7 @@ fn a_repair_adds_what_is_missing_and_keeps_the_rest() {
     assert!(report.findings.iter().all(|finding| !finding.rule.ends_with("digest.missing")));
     let tree = tree_of(&after);
     assert_eq!(tree.attributes.get("institution").and_then(Array::as_text), Some("a hall"));
-    assert_eq!(tree.dataset("notes").unwrap().array.data, Data::F64(vec![1.0, 2.0]));
+    assert_eq!(tree.dataset("notes").unwrap().array.data, Data::F64(vec![1.0, 2.0].into()));
     assert!(folder.reported(&["--fix", "unsigned.bbrf"]).contains("nothing that writing it again would mend"));
 }
 

@@ -80,6 +80,17 @@ pub(super) struct Digests {
 }
 
 impl Digests {
+    /// Those that the objects of a file state; `None` for a file without one for the document.
+    #[cfg(feature = "write")]
+    pub(super) fn stated(root: &Group) -> Option<Self> {
+        let text = |object: Object<'_>, name: &str| object.attributes().get(name)?.as_text().map(str::to_owned);
+        let mut objects = BTreeMap::new();
+        root.visit("", &mut |path, object| {
+            objects.extend(text(object, name::SHA256).map(|digest| (path.to_owned(), digest)));
+        });
+        Some(Self { objects, document: Digest(text(Object::Group(root), name::DIGEST)?) })
+    }
+
     /// Computes them, over all cores.
     pub(super) fn of(root: &Group) -> Self {
         let mut objects = Vec::new();
@@ -113,7 +124,7 @@ fn array(hash: &mut Sha256, shape: &[usize], data: &Data) {
     text(hash, data.type_name());
     hash.update((shape.len() as u64).to_le_bytes());
     shape.iter().for_each(|length| hash.update((*length as u64).to_le_bytes()));
-    data.for_each_byte_block(|block| hash.update(block));
+    hash.update(data.bytes());
 }
 
 fn text(hash: &mut Sha256, text: &str) {

@@ -86,7 +86,7 @@ fn put_fields(group: &mut Group, fields: Map<String, Value>) -> Result<(), Encod
 fn put_attribute(attributes: &mut Attributes, name: &str, value: &Value) -> Result<(), EncodeError> {
     let data = match value {
         Value::String(text) => Data::Text(vec![without_nul(text)?]),
-        Value::Bool(truth) => Data::U8(vec![u8::from(*truth)]),
+        Value::Bool(truth) => Data::U8(vec![u8::from(*truth)].into()),
         Value::Number(number) => Data::F64(number.as_f64().into_iter().collect()),
         Value::Null | Value::Array(_) | Value::Object(_) => return Ok(()),
     };

@@ -9,13 +9,16 @@
 //! *Invariant:* what is written is read back to the bit; the same document gives the same bytes; a file on disk is the
 //! old one or the new one. Whatever the bytes, reading ends in a document or an error, within [`Limits`].
 
+mod checksum;
 mod chunk_table;
 mod decode;
+mod differing;
 mod digest;
 mod encode;
 mod encoding;
 mod error;
 mod fields;
+mod file_bytes;
 mod foreign;
 pub mod layout;
 mod limits;
@@ -29,9 +32,11 @@ pub use crate::dataset::tree;
 mod write;
 
 pub use chunk_table::Chunks;
+pub use differing::Differing;
 pub use digest::{Digest, digest, measurement_digest};
 pub use encoding::{Construct, Encoded};
 pub use error::{EncodeError, ReadError, WriteError};
+pub use file_bytes::FileBytes;
 pub use foreign::Foreign;
 pub use limits::Limits;
 pub use open::{Inspection, Mismatch, Opened, inspect, open_to_rewrite, open_verified, read_bytes, read_file};

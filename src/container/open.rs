@@ -5,10 +5,12 @@ use std::path::Path;
 
 use super::chunk_table::Chunks;
 use super::decode::decode;
+use super::differing::Differing;
 use super::digest::{Digest, Digests, of_lines};
 use super::encode::encode;
 use super::encoding::Encoded;
 use super::error::ReadError;
+use super::file_bytes::FileBytes;
 use super::foreign::Foreign;
 use super::layout::{self, is_description, name};
 use super::limits::Limits;
@@ -40,17 +42,17 @@ pub struct Opened {
 pub fn read_file(path: &Path) -> Result<Opened, ReadError> {
     let name = path.display().to_string();
     let bytes =
-        std::fs::read(path).map_err(|source| ReadError::Io { place: Box::new(Place::file(name.clone())), source })?;
-    read_bytes(&bytes, &Limits::default()).map_err(|error| error.in_file(&name))
+        FileBytes::read(path).map_err(|source| ReadError::Io { place: Box::new(Place::file(name.clone())), source })?;
+    read_bytes(bytes, &Limits::default()).map_err(|error| error.in_file(&name))
 }
 
 /// Reads the bytes of a file.
 ///
 /// # Errors
 /// As [`read_file`].
-pub fn read_bytes(bytes: &[u8], limits: &Limits) -> Result<Opened, ReadError> {
+pub fn read_bytes(bytes: impl Into<FileBytes>, limits: &Limits) -> Result<Opened, ReadError> {
     let Inspection { document, stored_digest, computed_digest, foreign, unknown, mismatches, .. } =
-        inspect(bytes, limits)?;
+        look(bytes.into(), limits, Depth::Content)?;
     let document = document?;
     document.check().map_err(|source| ReadError::Document { place: Box::default(), source })?;
     let computed_digest =
@@ -60,16 +62,26 @@ pub fn read_bytes(bytes: &[u8], limits: &Limits) -> Result<Opened, ReadError> {
 }
 
 /// The tree of a document with its digests.
-#[derive(Debug)]
-pub(super) struct Canonical {
-    pub(super) tree: Group,
-    pub(super) digests: Digests,
+struct Canonical {
+    tree: Group,
+    digests: Digests,
+}
+
+/// How far a file is looked into.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Depth {
+    /// What it holds.
+    Content,
+    /// Also whether its bytes are those of the writer.
+    Bytes,
 }
 
 /// A file looked at without asking that it is right.
 #[derive(Debug)]
 pub struct Inspection {
-    /// Everything in it.
+    /// The bytes themselves.
+    pub bytes: FileBytes,
+    /// Everything in them.
     pub tree: Group,
     /// The document, or why there is none; its parts are not checked against each other.
     pub document: Result<Document, ReadError>,
@@ -85,9 +97,8 @@ pub struct Inspection {
     pub chunks: Chunks,
     /// Encodings that the standard does not use and some reader cannot read.
     pub unusual: Vec<Encoded>,
-    /// The document as it would be written.
-    #[cfg(feature = "write")]
-    pub(super) canonical: Option<Canonical>,
+    /// How its bytes differ from those of the writer; `None` where it was written by another program.
+    pub differing: Option<Differing>,
     /// What differs from how the document would be written.
     pub mismatches: Vec<Mismatch>,
 }
@@ -96,17 +107,31 @@ pub struct Inspection {
 ///
 /// # Errors
 /// [`ReadError`] when the bytes are no HDF5, damaged, or beyond the limits.
-pub fn inspect(bytes: &[u8], limits: &Limits) -> Result<Inspection, ReadError> {
-    let Read { tree, unusual, chunks } = from_bytes(bytes, limits)?;
+pub fn inspect(bytes: impl Into<FileBytes>, limits: &Limits) -> Result<Inspection, ReadError> {
+    look(bytes.into(), limits, Depth::Bytes)
+}
+
+fn look(bytes: FileBytes, limits: &Limits, depth: Depth) -> Result<Inspection, ReadError> {
+    let Read { tree, unusual, chunks } = from_bytes(&bytes, limits)?;
     let document = decode(&tree);
     let stored_digest = stored_text(&tree.attributes, name::DIGEST);
     let canonical = document.as_ref().ok().and_then(|document| encode(document).ok());
-    let canonical = canonical.map(|tree| Canonical { digests: Digests::of(&tree), tree });
+    let differ = |canonical: &Group| match depth {
+        Depth::Bytes => Differing::of(&bytes, &chunks, &tree, canonical),
+        Depth::Content => None,
+    };
+    // Both go over everything, and need nothing of each other.
+    let both = canonical.map(|tree| {
+        let (digests, differing) = rayon::join(|| Digests::of(&tree), || differ(&tree));
+        (Canonical { digests, tree }, differing)
+    });
+    let (canonical, differing) = both.map_or((None, None), |(canonical, differing)| (Some(canonical), differing));
     let computed_digest = canonical.as_ref().map(|canonical| canonical.digests.document.clone());
     let mismatches =
         canonical.as_ref().map_or_else(Vec::new, |canonical| mismatches(&tree, canonical, stored_digest.as_deref()));
     let foreign = Foreign::of(&tree);
     Ok(Inspection {
+        bytes,
         unusual,
         chunks,
         unknown: foreign.paths().into_iter().map(str::to_owned).collect(),
@@ -115,8 +140,7 @@ pub fn inspect(bytes: &[u8], limits: &Limits) -> Result<Inspection, ReadError> {
         document,
         stored_digest,
         computed_digest,
-        #[cfg(feature = "write")]
-        canonical,
+        differing,
         mismatches,
     })
 }

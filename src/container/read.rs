@@ -2,16 +2,20 @@
 //!
 //! Anything wrong ends the read: half a tree is no tree.
 
+mod chunks;
+
 use std::collections::HashSet;
 use std::sync::Arc;
 
 use hdf5_reader::error::Error;
 use hdf5_reader::messages::link::LinkTarget;
+use hdf5_reader::object_header::ObjectHeader;
 use hdf5_reader::{Attribute, Datatype, Hdf5File, OpenOptions, StringSize};
 
 use super::chunk_table::Chunks;
 use super::encoding::{self, Construct, Encoded};
 use super::error::ReadError;
+use super::file_bytes::FileBytes;
 use super::limits::Limits;
 use super::links;
 use super::tree::{Array, Attributes, Data, Dataset, Group};
@@ -28,7 +32,7 @@ pub(super) struct Read {
 ///
 /// # Errors
 /// [`ReadError`] when the bytes are no HDF5, damaged, or beyond the limits.
-pub(super) fn from_bytes(bytes: &[u8], limits: &Limits) -> Result<Read, ReadError> {
+pub(super) fn from_bytes(bytes: &FileBytes, limits: &Limits) -> Result<Read, ReadError> {
     let size = bytes.len() as u64;
     within("bytes", size, limits.file_bytes, "/")?;
     let decoded = limits.decoded_bytes(size);
@@ -39,13 +43,13 @@ pub(super) fn from_bytes(bytes: &[u8], limits: &Limits) -> Result<Read, ReadErro
         .with_max_chunk_bytes(most)
         .with_max_read_bytes(most)
         .with_max_object_header_bytes(bytes.len());
-    let file = Hdf5File::from_shared_bytes_with_options(Arc::from(bytes), options)
-        .map_err(|error| ReadError::encoding("/", error))?;
+    let file = Hdf5File::from_owner(bytes.clone(), options).map_err(|error| ReadError::encoding("/", error))?;
     let root = file.root_group().map_err(|error| ReadError::encoding("/", error))?;
     let mut unusual = Vec::new();
     encoding::of_file(&file, &mut unusual);
     let mut walk = Walk {
         file: &file,
+        bytes,
         limits,
         decoded_left: decoded,
         objects: 0,
@@ -66,6 +70,7 @@ fn within(what: &'static str, found: u64, limit: u64, path: &str) -> Result<(), 
 
 struct Walk<'a> {
     file: &'a Hdf5File,
+    bytes: &'a [u8],
     unusual: Vec<Encoded>,
     chunks: Chunks,
     limits: &'a Limits,
@@ -118,13 +123,19 @@ impl Walk<'_> {
         self.chunks.take(self.file, &header, shape.len(), path);
         let data = match encoding::unreadable(&header) {
             Some(why) => Data::Other(why),
-            None => self.values(dataset, path)?,
+            None => self.values(dataset, &header, &shape, path)?,
         };
         let is_scale = attributes.get("CLASS").and_then(Array::as_text) == Some("DIMENSION_SCALE");
         Ok(Dataset { attributes, is_scale, ..Dataset::new(Array { shape, data }) })
     }
 
-    fn values(&mut self, dataset: &hdf5_reader::Dataset, path: &str) -> Result<Data, ReadError> {
+    fn values(
+        &mut self,
+        dataset: &hdf5_reader::Dataset,
+        header: &ObjectHeader,
+        shape: &[usize],
+        path: &str,
+    ) -> Result<Data, ReadError> {
         let failed = |error: Error| ReadError::encoding(path, error);
         let kind = dataset.dtype();
         if is_string(kind) {
@@ -137,8 +148,12 @@ impl Walk<'_> {
                 match type_of(kind) {
                     $(Some(Numeric::$variant) => {
                         self.spend(dataset.num_elements().map_err(failed)?, size_of::<$type>(), path)?;
+                        let placed = self.chunks.0.get(path);
+                        if let Some(values) = chunks::values::<$type>(self.bytes, header, kind, placed, shape) {
+                            return Ok(Data::$variant(values.into()));
+                        }
                         let array = dataset.read_array_uncached_parallel::<$type>().map_err(failed)?;
-                        Ok(Data::$variant(array.into_raw_vec_and_offset().0))
+                        Ok(Data::$variant(array.into_raw_vec_and_offset().0.into()))
                     })+
                     None => Ok(Data::Other(format!("{kind:?}"))),
                 }
@@ -197,7 +212,7 @@ fn attribute_array(attribute: &Attribute, path: &str) -> Result<Array, ReadError
         macro_rules! read {
             ($($variant:ident: $type:ty),+) => {
                 match type_of(&attribute.datatype) {
-                    $(Some(Numeric::$variant) => Data::$variant(attribute.read_1d::<$type>().map_err(failed)?),)+
+                    $(Some(Numeric::$variant) => Data::$variant(attribute.read_1d::<$type>().map_err(failed)?.into()),)+
                     None => Data::Other(format!("{:?}", attribute.datatype)),
                 }
             };

@@ -8,7 +8,6 @@ use super::digest::{Digest, Digests, of_tree, sign};
 use super::encode::encode;
 use super::error::{EncodeError, WriteError};
 use super::foreign::Foreign;
-use super::open::Inspection;
 use super::replace::write_whole;
 use super::tree::Group;
 use super::write::chunks::Source;
@@ -65,17 +64,6 @@ pub fn unchecked_bytes(document: &Document) -> Option<Vec<u8>> {
     let tree = encode(document).ok()?;
     let digests = Digests::of(&tree);
     to_bytes(&tree, Plan { source: Source::Values, digests: Some(&digests) }).ok()
-}
-
-impl Inspection {
-    /// The bytes that the document of this file would be written as, around the chunks that the file has; `None` where it
-    /// has others, or there is no document.
-    #[must_use]
-    pub fn rewritten(&self, bytes: &[u8]) -> Option<Vec<u8>> {
-        let canonical = self.canonical.as_ref()?;
-        let source = Source::File(bytes, &self.chunks.0);
-        to_bytes(&canonical.tree, Plan { source, digests: Some(&canonical.digests) }).ok()
-    }
 }
 
 /// The tree of a consistent document, known to read back as the same document.

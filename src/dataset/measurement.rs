@@ -1,6 +1,6 @@
 //! Measurements: rows of acquisitions with values per emission wavelength.
 
-use ndarray::Array2;
+use ndarray::ArcArray2;
 use serde::{Deserialize, Serialize};
 
 use super::{Conditions, DirectionTest, Id};
@@ -130,11 +130,11 @@ pub struct Measurement {
     /// Values \[N, emission\] in the quantity's unit; NaN only where a flag says why.
     #[serde(with = "rows_plain")]
     #[schemars(with = "Vec<Vec<Option<f64>>>")]
-    pub values: Array2<f64>,
+    pub values: ArcArray2<f64>,
     /// Flag masks \[N, emission\].
     #[serde(with = "flag_rows")]
     #[schemars(with = "Vec<Vec<u16>>")]
-    pub flags: Array2<u16>,
+    pub flags: ArcArray2<u16>,
     /// Uncertainty of the values.
     #[serde(default)]
     pub uncertainty: Uncertainty,
@@ -172,8 +172,9 @@ impl Measurement {
         quantity: Quantity,
         emission: EmissionAxis,
         acquisitions: Vec<Acquisition>,
-        values: Array2<f64>,
+        values: impl Into<ArcArray2<f64>>,
     ) -> Self {
+        let values = values.into();
         Self {
             id,
             title: None,
@@ -185,7 +186,7 @@ impl Measurement {
             emission,
             excitations: Vec::new(),
             acquisitions,
-            flags: Array2::zeros(values.raw_dim()),
+            flags: ArcArray2::zeros(values.raw_dim()),
             values,
             uncertainty: Uncertainty::default(),
             conditions: Conditions::default(),
@@ -246,16 +247,16 @@ mod geometry_in_degrees {
 
 /// Flag masks in JSON as rows.
 mod flag_rows {
-    use ndarray::Array2;
+    use ndarray::ArcArray2;
     use serde::{Deserialize, Deserializer, Serialize, Serializer, de::Error};
 
-    pub(super) fn serialize<S: Serializer>(array: &Array2<u16>, serializer: S) -> Result<S::Ok, S::Error> {
+    pub(super) fn serialize<S: Serializer>(array: &ArcArray2<u16>, serializer: S) -> Result<S::Ok, S::Error> {
         array.rows().into_iter().map(|row| row.to_vec()).collect::<Vec<_>>().serialize(serializer)
     }
 
-    pub(super) fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Array2<u16>, D::Error> {
+    pub(super) fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<ArcArray2<u16>, D::Error> {
         let rows: Vec<Vec<u16>> = Deserialize::deserialize(deserializer)?;
         let shape = (rows.len(), rows.first().map_or(0, Vec::len));
-        Array2::from_shape_vec(shape, rows.into_iter().flatten().collect()).map_err(D::Error::custom)
+        ArcArray2::from_shape_vec(shape, rows.into_iter().flatten().collect()).map_err(D::Error::custom)
     }
 }

@@ -1,6 +1,6 @@
 //! Fitted models: terms, parameters with covariance, what they were fitted to and how.
 
-use ndarray::Array2;
+use ndarray::ArcArray2;
 use serde::{Deserialize, Serialize};
 
 use super::Id;
@@ -104,7 +104,7 @@ pub struct Model {
     /// Covariance of these parameters; NaN where the data cannot tell.
     #[serde(with = "rows_plain")]
     #[schemars(with = "Vec<Vec<Option<f64>>>")]
-    pub covariance: Array2<f64>,
+    pub covariance: ArcArray2<f64>,
     /// Residuals.
     pub residuals: Residuals,
     /// True when the fit ended at a minimum and not at a limit.

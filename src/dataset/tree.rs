@@ -1,25 +1,30 @@
 //! Groups, datasets and attributes as plain values: what an extension holds, and what everything between a document and
 //! a file passes through, so that neither the layout knows the libraries nor the libraries the layout.
 
+mod values;
+
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
+
+pub use values::Values;
 
 /// The values of an array, in row-major order.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "lowercase")]
 #[allow(missing_docs)]
 pub enum Data {
-    U8(Vec<u8>),
-    U16(Vec<u16>),
-    U32(Vec<u32>),
-    U64(Vec<u64>),
-    I8(Vec<i8>),
-    I16(Vec<i16>),
-    I32(Vec<i32>),
-    I64(Vec<i64>),
-    F32(Vec<f32>),
-    F64(Vec<f64>),
+    U8(Values<u8>),
+    U16(Values<u16>),
+    U32(Values<u32>),
+    U64(Values<u64>),
+    I8(Values<i8>),
+    I16(Values<i16>),
+    I32(Values<i32>),
+    I64(Values<i64>),
+    F32(Values<f32>),
+    F64(Values<f64>),
     Text(Vec<String>),
     /// A type that the format does not use, by its description; its values are not kept.
     Other(String),
@@ -70,35 +75,35 @@ impl Data {
         self.len() == 0
     }
 
-    /// The values as little-endian bytes; a text as its length (64 bit) and its UTF-8 bytes.
-    pub fn for_each_byte_block(&self, mut take: impl FnMut(&[u8])) {
-        macro_rules! blocks {
-            ($values:expr) => {{
-                // Blocks keep the hash at its full speed without a copy of the whole array.
-                let mut block = Vec::with_capacity(1 << 14);
-                for chunk in $values.chunks(1 << 10) {
-                    block.clear();
-                    chunk.iter().for_each(|value| block.extend_from_slice(&value.to_le_bytes()));
-                    take(&block);
+    /// The values as little-endian bytes, without a copy where the machine keeps them so; of a text its length (64 bit)
+    /// and its UTF-8 bytes.
+    #[must_use]
+    pub fn bytes(&self) -> Cow<'_, [u8]> {
+        macro_rules! bytes {
+            ($values:expr) => {
+                if cfg!(target_endian = "little") {
+                    Cow::Borrowed(bytemuck::cast_slice(&**$values))
+                } else {
+                    $values.iter().flat_map(|value| value.to_le_bytes()).collect()
                 }
-            }};
+            };
         }
         match self {
-            Self::U8(v) => take(v),
-            Self::U16(v) => blocks!(v),
-            Self::U32(v) => blocks!(v),
-            Self::U64(v) => blocks!(v),
-            Self::I8(v) => blocks!(v),
-            Self::I16(v) => blocks!(v),
-            Self::I32(v) => blocks!(v),
-            Self::I64(v) => blocks!(v),
-            Self::F32(v) => blocks!(v),
-            Self::F64(v) => blocks!(v),
-            Self::Text(v) => v.iter().for_each(|text| {
-                take(&(text.len() as u64).to_le_bytes());
-                take(text.as_bytes());
-            }),
-            Self::Other(_) => {}
+            Self::U8(v) => Cow::Borrowed(v),
+            Self::U16(v) => bytes!(v),
+            Self::U32(v) => bytes!(v),
+            Self::U64(v) => bytes!(v),
+            Self::I8(v) => bytes!(v),
+            Self::I16(v) => bytes!(v),
+            Self::I32(v) => bytes!(v),
+            Self::I64(v) => bytes!(v),
+            Self::F32(v) => bytes!(v),
+            Self::F64(v) => bytes!(v),
+            Self::Text(texts) => {
+                let length = |text: &String| (text.len() as u64).to_le_bytes();
+                texts.iter().flat_map(|text| length(text).into_iter().chain(text.bytes())).collect()
+            }
+            Self::Other(_) => Cow::Borrowed(&[]),
         }
     }
 }

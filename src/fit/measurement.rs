@@ -195,7 +195,7 @@ pub fn fit_measurement(
         emission: data.emission.clone(),
         terms: fitted_terms(&fit, &data, choice, options),
         covariance_parameters,
-        covariance,
+        covariance: covariance.into_shared(),
         residuals: Residuals { rms: f64::NAN, reduced_chi_square: f64::NAN, count: 0, left_out: 0 },
         converged: fit.stop.is_converged(),
         method: method(&fit),

@@ -167,10 +167,10 @@ impl<'a> Division<'a> {
             emission: sample.emission.clone(),
             excitations: sample.excitations.clone(),
             acquisitions: acquisitions(self.sample, &groups.sample, &self.rows),
-            values,
-            flags,
+            values: values.into_shared(),
+            flags: flags.into_shared(),
             uncertainty: Uncertainty {
-                standard: self.spread.known().then_some(sigma),
+                standard: self.spread.known().then(|| sigma.into_shared()),
                 components,
                 ..Uncertainty::default()
             },

@@ -1,6 +1,6 @@
 //! Repeats of one look without a white reference: their mean beside the raw rows.
 
-use ndarray::Array2;
+use ndarray::ArcArray2;
 
 use super::mean::{Mean, Spread};
 use super::noise::{Noise, RECORD_SCALE, kept};
@@ -37,10 +37,10 @@ pub(super) fn average(
     Some(Measurement {
         id,
         acquisitions: acquisitions(sample, &groups, &means),
-        values: Array2::from_shape_fn(shape, |(row, column)| means[row].value[column]),
-        flags: Array2::from_shape_fn(shape, |(row, column)| means[row].flags[column].0),
+        values: ArcArray2::from_shape_fn(shape, |(row, column)| means[row].value[column]),
+        flags: ArcArray2::from_shape_fn(shape, |(row, column)| means[row].flags[column].0),
         uncertainty: Uncertainty {
-            standard: known.then(|| Array2::from_shape_fn(shape, |(row, column)| kept(means[row].sigma[column]))),
+            standard: known.then(|| ArcArray2::from_shape_fn(shape, |(row, column)| kept(means[row].sigma[column]))),
             components: known.then(|| record_scale(scale)).into_iter().collect(),
             ..Uncertainty::default()
         },

@@ -1,6 +1,6 @@
 //! Standard uncertainty of measured values, with what is shared between values kept apart.
 
-use ndarray::Array2;
+use ndarray::ArcArray2;
 use serde::{Deserialize, Serialize};
 
 use super::{Finite, named};
@@ -99,7 +99,7 @@ pub struct Uncertainty {
     /// Standard uncertainty (k = 1) independent between values, in the unit of the values; NaN where unknown.
     #[serde(with = "rows", skip_serializing_if = "Option::is_none", default)]
     #[schemars(with = "Option<Vec<Vec<Option<f64>>>>")]
-    pub standard: Option<Array2<f64>>,
+    pub standard: Option<ArcArray2<f64>>,
     /// How the source states it.
     #[serde(default)]
     pub statement: Statement,
@@ -110,10 +110,10 @@ pub struct Uncertainty {
 
 /// Arrays in JSON as rows of numbers, with `null` for NaN.
 pub(crate) mod rows {
-    use ndarray::Array2;
+    use ndarray::ArcArray2;
     use serde::{Deserialize, Deserializer, Serialize, Serializer, de::Error};
 
-    pub(crate) fn serialize<S: Serializer>(array: &Option<Array2<f64>>, serializer: S) -> Result<S::Ok, S::Error> {
+    pub(crate) fn serialize<S: Serializer>(array: &Option<ArcArray2<f64>>, serializer: S) -> Result<S::Ok, S::Error> {
         let rows: Option<Vec<Vec<Option<f64>>>> = array.as_ref().map(|array| {
             array
                 .rows()
@@ -124,26 +124,26 @@ pub(crate) mod rows {
         rows.serialize(serializer)
     }
 
-    pub(crate) fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Array2<f64>>, D::Error> {
+    pub(crate) fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<ArcArray2<f64>>, D::Error> {
         let rows: Option<Vec<Vec<Option<f64>>>> = Deserialize::deserialize(deserializer)?;
         let Some(rows) = rows else { return Ok(None) };
         let columns = rows.first().map_or(0, Vec::len);
         let count = rows.len();
         let flat: Vec<f64> = rows.into_iter().flatten().map(|value| value.unwrap_or(f64::NAN)).collect();
-        Array2::from_shape_vec((count, columns), flat).map(Some).map_err(D::Error::custom)
+        ArcArray2::from_shape_vec((count, columns), flat).map(Some).map_err(D::Error::custom)
     }
 }
 
 /// The same for an array that is always there.
 pub(crate) mod rows_plain {
-    use ndarray::Array2;
+    use ndarray::ArcArray2;
     use serde::{Deserializer, Serializer, de::Error};
 
-    pub(crate) fn serialize<S: Serializer>(array: &Array2<f64>, serializer: S) -> Result<S::Ok, S::Error> {
+    pub(crate) fn serialize<S: Serializer>(array: &ArcArray2<f64>, serializer: S) -> Result<S::Ok, S::Error> {
         super::rows::serialize(&Some(array.clone()), serializer)
     }
 
-    pub(crate) fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Array2<f64>, D::Error> {
+    pub(crate) fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<ArcArray2<f64>, D::Error> {
         super::rows::deserialize(deserializer)?.ok_or_else(|| D::Error::custom("expected rows of numbers, found null"))
     }
 }

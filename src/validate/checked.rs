@@ -10,6 +10,7 @@ use sha2::{Digest as _, Sha256};
 use super::finding::{Finding, Report, Severity, Status};
 use super::grading::Grading;
 use super::{rule, validate_bytes};
+use crate::container::FileBytes;
 use crate::dataset::Place;
 
 /// One file with what was found in it.
@@ -38,8 +39,8 @@ pub fn validate_files<P: AsRef<Path> + Sync>(files: &[P], grading: &Grading, don
 /// Validates one file.
 #[must_use]
 pub fn validate_file(path: &Path, grading: &Grading) -> Checked {
-    let report = match std::fs::read(path) {
-        Ok(bytes) => validate_bytes(&bytes),
+    let report = match FileBytes::read(path) {
+        Ok(bytes) => validate_bytes(bytes),
         Err(error) => not_read(&error),
     };
     Checked::new(path.display().to_string(), report, grading)

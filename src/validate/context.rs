@@ -1,24 +1,29 @@
 //! What a rule sees: the raw tree, and the document where there is one.
 
+use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
+
+use super::census::Census;
 use crate::container::Inspection;
 use crate::container::layout::{self, name};
 use crate::container::tree::{Array, Data, Dataset, Group, Object};
 use crate::dataset::{Document, Measurement};
 
 /// A file under inspection.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug)]
 pub struct Context<'a> {
     /// What was read.
     pub inspection: &'a Inspection,
-    /// The bytes that it was read from.
-    pub bytes: &'a [u8],
+    /// Of each measurement of the document.
+    census: Vec<Census>,
 }
 
 impl<'a> Context<'a> {
     /// A context.
     #[must_use]
-    pub fn new(inspection: &'a Inspection, bytes: &'a [u8]) -> Self {
-        Self { inspection, bytes }
+    pub fn new(inspection: &'a Inspection) -> Self {
+        let document = inspection.document.as_ref();
+        let census = document.map_or_else(|_| Vec::new(), |all| all.measurements.par_iter().map(Census::of).collect());
+        Self { inspection, census }
     }
 
     /// The document, if the tree is one.
@@ -31,6 +36,11 @@ impl<'a> Context<'a> {
     pub fn measurements(&self) -> impl Iterator<Item = (String, &'a Measurement)> {
         let measurements = self.document().map_or(&[][..], |document| &document.measurements);
         measurements.iter().map(|measurement| (format!("/{}/{}", name::MEASUREMENT, measurement.id), measurement))
+    }
+
+    /// The same measurements, with what there is among their values.
+    pub(super) fn counted(&self) -> impl Iterator<Item = (String, &'a Measurement, Census)> {
+        self.measurements().zip(&self.census).map(|((path, measurement), census)| (path, measurement, *census))
     }
 
     /// A text attribute of the root.

@@ -4,6 +4,7 @@
 //!
 //! *Invariant:* whatever the bytes, validation ends in a report; a file that cannot be read in full is never valid.
 
+mod census;
 mod checked;
 mod context;
 mod finding;
@@ -17,7 +18,7 @@ mod significance;
 
 use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
 
-use crate::container::{Limits, inspect};
+use crate::container::{FileBytes, Limits, inspect};
 
 #[cfg(feature = "write")]
 pub(crate) use checked::counted;
@@ -29,14 +30,14 @@ pub use registry::{CLAUSES, RULES, Rule, rule};
 #[cfg(feature = "write")]
 pub use repair::{NotRepaired, Repair, repair};
 
-/// Validates the bytes of a file.
+/// Validates the bytes of a file; a vector of them is taken as it is, a slice is copied.
 #[must_use]
-pub fn validate_bytes(bytes: &[u8]) -> Report {
+pub fn validate_bytes(bytes: impl Into<FileBytes>) -> Report {
     let inspection = match inspect(bytes, &Limits::default()) {
         Ok(inspection) => inspection,
         Err(error) => return rules::structure::unreadable(&error),
     };
-    let context = Context::new(&inspection, bytes);
+    let context = Context::new(&inspection);
     // Rules know nothing of each other; findings come in the order of the rules.
     let checked = RULES.par_iter().map(|rule| {
         let mut found = rule.finder();

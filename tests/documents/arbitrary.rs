@@ -204,10 +204,10 @@ fn direction_test() -> impl Strategy<Value = DirectionTest> {
 /// Arrays of every type that an extension may hold.
 fn array() -> impl Strategy<Value = Array> {
     let data = prop_oneof![
-        vec(any::<u8>(), 0..5).prop_map(Data::U8),
-        vec(any::<i64>(), 0..5).prop_map(Data::I64),
-        vec(any::<f32>(), 0..5).prop_map(Data::F32),
-        numbers(5).prop_map(Data::F64),
+        vec(any::<u8>(), 0..5).prop_map(|values| Data::U8(values.into())),
+        vec(any::<i64>(), 0..5).prop_map(|values| Data::I64(values.into())),
+        vec(any::<f32>(), 0..5).prop_map(|values| Data::F32(values.into())),
+        numbers(5).prop_map(|values| Data::F64(values.into())),
         vec(text(), 0..4).prop_map(Data::Text),
     ];
     (data, any::<bool>())
@@ -297,9 +297,13 @@ fn measurement(id: Id, names: &Names) -> impl Strategy<Value = Measurement> + us
             emission,
             excitations,
             acquisitions,
-            values,
-            flags,
-            uncertainty: Uncertainty { standard, statement, components },
+            values: values.into_shared(),
+            flags: flags.into_shared(),
+            uncertainty: Uncertainty {
+                standard: standard.map(|standard| standard.into_shared()),
+                statement,
+                components,
+            },
             conditions,
             direction_tests,
             derivation,
@@ -436,7 +440,7 @@ fn model(id: Id, measurements: &[Id]) -> impl Strategy<Value = Model> + use<> {
         emission: head.6,
         terms: middle.0,
         covariance_parameters: middle.1,
-        covariance: middle.2,
+        covariance: middle.2.into_shared(),
         residuals: Residuals {
             rms: middle.3.0,
             reduced_chi_square: middle.3.1,

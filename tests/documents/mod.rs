@@ -6,7 +6,7 @@ mod arbitrary;
 use bbrf::dataset::*;
 use bbrf::quantity::*;
 use bbrf::terms::{Denominator, Distribution, TermKind};
-use ndarray::Array2;
+use ndarray::{ArcArray2, Array2};
 
 pub use arbitrary::document as arbitrary_document;
 
@@ -47,7 +47,7 @@ pub fn measurement(name: &str, geometries: &[Geometry], columns: usize) -> Measu
     };
     let emission = EmissionAxis::Wavelengths(WavelengthAxis { nm, bandpass, actual_nm: vec![] });
     let uncertainty = Uncertainty {
-        standard: Some(values.mapv(|value| value * 0.01)),
+        standard: Some(values.mapv(|value| value * 0.01).into_shared()),
         statement: Statement { evaluation: Some(EvaluationType::A), ..Statement::default() },
         components: vec![Component::new("certificate", vec![0.005], CorrelatedOver::All)],
     };
@@ -178,7 +178,7 @@ pub fn model(data_digest: String) -> Model {
             },
         ],
         covariance_parameters: vec!["lambertian.albedo".into(), "torrance-sparrow.intensity".into()],
-        covariance: Array2::from_shape_vec((2, 2), vec![1e-4, 1e-5, 1e-5, 1e-3]).unwrap(),
+        covariance: ArcArray2::from_shape_vec((2, 2), vec![1e-4, 1e-5, 1e-5, 1e-3]).unwrap(),
         residuals: Residuals { rms: 0.01, reduced_chi_square: 1.02, count: 9, left_out: 1 },
         converged: true,
         method: "variable projection".into(),

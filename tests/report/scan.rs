@@ -111,7 +111,11 @@ fn measurement() -> Measurement {
     let standard = Some(&values * 0.02);
     Measurement {
         sample: Some(id("sheet")),
-        uncertainty: Uncertainty { standard, components: vec![shared], ..Uncertainty::default() },
+        uncertainty: Uncertainty {
+            standard: standard.map(|standard| standard.into_shared()),
+            components: vec![shared],
+            ..Uncertainty::default()
+        },
         ..Measurement::new(id("factor"), Role::Sample, quantity, emission, acquisitions, values)
     }
 }
@@ -157,7 +161,7 @@ pub(crate) fn model() -> Model {
         emission: EmissionAxis::Band { band: Some(Band { from_nm: 500.0, to_nm: 620.0 }) },
         terms: vec![lambertian, specular],
         covariance_parameters: Vec::new(),
-        covariance: Array2::zeros((0, 0)),
+        covariance: ndarray::ArcArray2::zeros((0, 0)),
         residuals: Residuals { rms: 0.002_713, reduced_chi_square: 1.03, count: 272, left_out: 0 },
         converged: true,
         method: "variable projection; every start of the grid led to this minimum".to_owned(),

@@ -2,7 +2,7 @@
 
 use bbrf::dataset::*;
 use bbrf::quantity::*;
-use ndarray::Array2;
+use ndarray::ArcArray2;
 
 use crate::conformance::{clean, id};
 
@@ -81,9 +81,9 @@ pub fn full() -> Document {
     band.emission = EmissionAxis::Band { band: Some(Band { from_nm: 500.0, to_nm: 540.0 }) };
     band.quantity.certified_factor = vec![0.99];
     for array in [Some(&mut band.values), band.uncertainty.standard.as_mut()].into_iter().flatten() {
-        *array = Array2::from_shape_fn((array.nrows(), 1), |(row, _)| array[[row, 0]]);
+        *array = ArcArray2::from_shape_fn((array.nrows(), 1), |(row, _)| array[[row, 0]]);
     }
-    band.flags = Array2::zeros(band.values.dim());
+    band.flags = ArcArray2::zeros(band.values.dim());
     band.uncertainty.components[0].relative = vec![0.01];
     band.uncertainty.components.truncate(1);
     document.measurements.push(band);
@@ -192,15 +192,15 @@ pub fn minimal() -> Document {
     let emission = EmissionAxis::Wavelengths(axis.clone());
     let row = Acquisition::at(None, 0);
     let least =
-        Measurement::new(id("least"), Role::Sample, quantity.clone(), emission, vec![row], Array2::zeros((1, 2)));
+        Measurement::new(id("least"), Role::Sample, quantity.clone(), emission, vec![row], ArcArray2::zeros((1, 2)));
     let band = Measurement {
         id: id("band"),
         emission: EmissionAxis::Band { band: None },
-        values: Array2::zeros((1, 1)),
-        flags: Array2::zeros((1, 1)),
+        values: ArcArray2::zeros((1, 1)),
+        flags: ArcArray2::zeros((1, 1)),
         excitations: vec![Excitation::default()],
         uncertainty: Uncertainty {
-            standard: Some(Array2::zeros((1, 1))),
+            standard: Some(ArcArray2::zeros((1, 1))),
             components: vec![Component::new("a cause", vec![0.01], CorrelatedOver::All)],
             ..Uncertainty::default()
         },

@@ -1,13 +1,13 @@
 //! A measurement: rows, excitation states, values, uncertainty.
 
-use ndarray::Array2;
+use ndarray::ArcArray2;
 
 use super::super::error::ReadError;
 use super::super::fields::{decode_attributes, decode_fields};
 use super::super::layout::{self, name};
-use super::super::tree::Data;
+use super::super::tree::{Data, Values};
 use super::parts::{emission_axis, quantity};
-use super::{At, dataset_text, integers, numbers, parsed};
+use super::{At, dataset_text, masks, numbers, parsed};
 use crate::dataset::{Acquisition, Derivation, DirectionTest, Excitation, Id, Measurement};
 use crate::quantity::{Component, Geometry, Statement, Uncertainty};
 
@@ -33,7 +33,7 @@ pub(super) fn measurement(id: Id, at: &At<'_>) -> Result<Measurement, ReadError>
         excitations: excitations(at)?,
         acquisitions: rows(at)?,
         values: matrix(at, name::VALUE, numbers)?,
-        flags: matrix(at, name::VALUE_FLAG, integers)?,
+        flags: matrix(at, name::VALUE_FLAG, masks)?,
         uncertainty,
         conditions: decode_fields(at.group, &at.path, None)?,
         direction_tests: direction_tests(at)?,
@@ -42,15 +42,16 @@ pub(super) fn measurement(id: Id, at: &At<'_>) -> Result<Measurement, ReadError>
 }
 
 /// A matrix through a conversion of its values.
-pub(super) fn matrix<T>(
+pub(super) fn matrix<T: Clone>(
     at: &At<'_>,
     name: &str,
-    convert: impl Fn(&Data, &str) -> Result<Vec<T>, ReadError>,
-) -> Result<Array2<T>, ReadError> {
+    convert: impl Fn(&Data, &str) -> Result<Values<T>, ReadError>,
+) -> Result<ArcArray2<T>, ReadError> {
     let (shape, data) = at.matrix(name)?;
     let path = at.member_path(name);
-    Array2::from_shape_vec(shape, convert(data, &path)?)
-        .map_err(|error| ReadError::unexpected(&path, error.to_string(), format!("{shape:?} values")))
+    let values = convert(data, &path)?;
+    let found = || ReadError::unexpected(&path, format!("{} values", values.len()), format!("{shape:?} values"));
+    values.to_matrix(shape).ok_or_else(found)
 }
 
 /// A column with one value for each row of the table it belongs to.
@@ -202,7 +203,7 @@ fn direction_tests(at: &At<'_>) -> Result<Vec<DirectionTest>, ReadError> {
         Err(ReadError::unexpected(&at.member_path(name), found, format!("[{}, 3]", rows.len())))
     };
     let (incidence, viewing) = (vectors(name::DIRECTION_TEST_INCIDENCE)?, vectors(name::DIRECTION_TEST_VIEWING)?);
-    let vector = |all: &Array2<f64>, row: usize| [all[(row, 0)], all[(row, 1)], all[(row, 2)]];
+    let vector = |all: &ArcArray2<f64>, row: usize| [all[(row, 0)], all[(row, 1)], all[(row, 2)]];
     let tests = rows.iter().enumerate();
     Ok(tests
         .map(|(i, &row)| DirectionTest { row, incidence: vector(&incidence, i), viewing: vector(&viewing, i) })

@@ -13,7 +13,7 @@ use serde::de::DeserializeOwned;
 
 use super::error::ReadError;
 use super::layout::{self, name};
-use super::tree::{Array, Data, Dataset, Group};
+use super::tree::{Array, Data, Dataset, Group, Values};
 use crate::dataset::{Document, Id};
 
 /// The document of a tree.
@@ -147,7 +147,7 @@ impl<'a> At<'a> {
 
     fn numbers(&self, name: &str) -> Result<Vec<f64>, ReadError> {
         let array = self.vector(name)?;
-        numbers(&array.data, &self.member_path(name))
+        numbers(&array.data, &self.member_path(name)).map(|values| values.to_vec())
     }
 
     /// No dataset is an empty list.
@@ -219,18 +219,26 @@ fn parsed<T: FromStr<Err: std::fmt::Display>>(text: &str, path: &str) -> Result<
 }
 
 pub(super) fn attribute_number(array: &Array, path: &str) -> Result<f64, ReadError> {
-    match numbers(&array.data, path)?.as_slice() {
+    match &*numbers(&array.data, path)? {
         [one] => Ok(*one),
         other => Err(ReadError::unexpected(path, format!("{} numbers", other.len()), "one number")),
     }
 }
 
 /// Numbers of any type that double precision holds exactly.
-fn numbers(data: &Data, path: &str) -> Result<Vec<f64>, ReadError> {
+fn numbers(data: &Data, path: &str) -> Result<Values<f64>, ReadError> {
     match data {
         Data::F64(values) => Ok(values.clone()),
         Data::F32(values) => Ok(values.iter().map(|value| f64::from(*value)).collect()),
         other => Ok(integers::<i32>(other, path)?.into_iter().map(f64::from).collect()),
+    }
+}
+
+/// Bit masks, shared where they have the type of the standard.
+fn masks(data: &Data, path: &str) -> Result<Values<u16>, ReadError> {
+    match data {
+        Data::U16(values) => Ok(values.clone()),
+        other => integers(other, path).map(Values::from),
     }
 }
 

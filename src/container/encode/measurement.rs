@@ -1,11 +1,9 @@
 //! A measurement as a group that is complete in itself: values, uncertainty, flags and every coordinate.
 
-use ndarray::Array2;
-
 use super::super::error::EncodeError;
 use super::super::fields::{encode_attributes, encode_fields};
 use super::super::layout::{self, name};
-use super::super::tree::{Array, Data, Dataset, Group};
+use super::super::tree::{Array, Data, Dataset, Group, Values};
 use super::parts::{certified_factor, emission_axis, quantity, si_unit, value_flags};
 use crate::dataset::{Acquisition, Derivation, DirectionTest, Excitation, Id, Measurement};
 use crate::quantity::{BandpassCorrection, BandpassShape, Component, Geometry};
@@ -128,7 +126,7 @@ fn values(group: &mut Group, measurement: &Measurement, emission: &str) -> Resul
     let axes = vec![name::ACQUISITION.to_owned(), emission.to_owned()];
     let shape = vec![measurement.values.nrows(), measurement.values.ncols()];
     let matrix = |data: Data| Dataset { axes: axes.clone(), ..Dataset::new(Array { shape: shape.clone(), data }) };
-    let value = group.put(name::VALUE, matrix(Data::F64(row_major(&measurement.values))));
+    let value = group.put(name::VALUE, matrix(Data::F64(Values::of_matrix(&measurement.values))));
     quantity(value, &measurement.quantity)?;
     let coordinates = [name::THETA_I, name::PHI_I, name::THETA_V, name::PHI_V].join(" ");
     value.checked_text(name::COORDINATES, &coordinates)?;
@@ -138,14 +136,14 @@ fn values(group: &mut Group, measurement: &Measurement, emission: &str) -> Resul
     }
     value.checked_text(name::ANCILLARY, &ancillary.join(" "))?;
     if let Some(standard) = &measurement.uncertainty.standard {
-        let uncertainty = group.put(name::VALUE_U, matrix(Data::F64(row_major(standard))));
+        let uncertainty = group.put(name::VALUE_U, matrix(Data::F64(Values::of_matrix(standard))));
         uncertainty
             .unit(measurement.quantity.kind.unit())
             .long_name("standard uncertainty (k = 1), independent between values");
         si_unit(uncertainty, measurement.quantity.kind);
         encode_attributes(&mut uncertainty.attributes, &measurement.uncertainty.statement)?;
     }
-    group.put(name::VALUE_FLAG, matrix(Data::U16(row_major(&measurement.flags))));
+    group.put(name::VALUE_FLAG, matrix(Data::U16(Values::of_matrix(&measurement.flags))));
     value_flags(group);
     Ok(())
 }
@@ -154,7 +152,7 @@ fn values(group: &mut Group, measurement: &Measurement, emission: &str) -> Resul
 fn components(group: &mut Group, components: &[Component], emission: &str) -> Result<(), EncodeError> {
     for (position, component) in components.iter().enumerate() {
         let name = format!("{}{position}", name::COMPONENT);
-        let dataset = group.vector(&name, Data::F64(component.relative.clone()), emission);
+        let dataset = group.vector(&name, Data::F64(component.relative.clone().into()), emission);
         dataset.unit("1").long_name("relative standard uncertainty shared between values");
         dataset
             .checked_text(name::CAUSE, &component.name)?
@@ -196,7 +194,7 @@ fn derived_from(derivation: &Derivation) -> Result<Group, EncodeError> {
         (name::REFERENCE_GROUP, &derivation.reference_group),
         (name::ROW_REFERENCE, &derivation.row_reference),
     ] {
-        group.vector(name, Data::I32(rows.clone()), "");
+        group.vector(name, Data::I32(rows.clone().into()), "");
     }
     Ok(group)
 }
@@ -204,7 +202,7 @@ fn derived_from(derivation: &Derivation) -> Result<Group, EncodeError> {
 /// A mask that says which optional fields are stated, in the words of CF.
 fn stated_fields(group: &mut Group, name: &str, masks: Vec<u8>, fields: &[&str], axis: &str) {
     let all = Data::U8((0..fields.len()).map(|bit| 1 << bit).collect());
-    group.vector(name, Data::U8(masks), axis).flags(all, fields).long_name("which fields the source states");
+    group.vector(name, Data::U8(masks.into()), axis).flags(all, fields).long_name("which fields the source states");
 }
 
 fn bits<const N: usize>(known: [bool; N]) -> u8 {
@@ -214,8 +212,4 @@ fn bits<const N: usize>(known: [bool; N]) -> u8 {
 /// NaN where nothing is stated; the mask beside it tells that from a stated NaN.
 fn optional_numbers(numbers: impl Iterator<Item = Option<f64>>) -> Data {
     Data::F64(numbers.map(|number| number.unwrap_or(f64::NAN)).collect())
-}
-
-fn row_major<T: Copy>(array: &Array2<T>) -> Vec<T> {
-    array.iter().copied().collect()
 }

@@ -69,7 +69,7 @@ impl Group {
         for (position, part) in parts.iter().enumerate() {
             let (id, group) = encode(part);
             let mut group = group?;
-            group.attribute(name::POSITION, Data::I32(vec![index(position)]));
+            group.attribute(name::POSITION, Data::I32(vec![index(position)].into()));
             list.groups.push((id.to_string(), group));
         }
         self.groups.push((name.to_owned(), list));
@@ -85,7 +85,7 @@ impl Group {
 
     /// A dimension scale with values, as wavelengths.
     fn scale(&mut self, name: &str, values: &[f64], unit: &str, long_name: &str) {
-        let dataset = Dataset { is_scale: true, ..Dataset::new(Array::vector(Data::F64(values.to_vec()))) };
+        let dataset = Dataset { is_scale: true, ..Dataset::new(Array::vector(Data::F64(values.to_vec().into()))) };
         let dataset = dataset.with_text(name::UNITS, unit).with_text(name::LONG_NAME, long_name);
         self.datasets.push((name.to_owned(), dataset));
     }

@@ -16,11 +16,11 @@ pub(super) fn model(model: &Model) -> Result<Group, EncodeError> {
     group.text(name::REFERENCE, &faithful(name::REFERENCE, &model.reference)?)?;
     group.text(name::UNIT, &model.unit)?;
     group.text(name::METHOD, &model.method)?;
-    group.attribute(name::CONVERGED, Data::U8(vec![u8::from(model.converged)]));
-    group.attribute(name::RESIDUAL_RMS, Data::F64(vec![model.residuals.rms]));
-    group.attribute(name::REDUCED_CHI_SQUARE, Data::F64(vec![model.residuals.reduced_chi_square]));
-    group.attribute(name::RESIDUAL_COUNT, Data::U64(vec![model.residuals.count]));
-    group.attribute(name::RESIDUAL_LEFT_OUT, Data::U64(vec![model.residuals.left_out]));
+    group.attribute(name::CONVERGED, Data::U8(vec![u8::from(model.converged)].into()));
+    group.attribute(name::RESIDUAL_RMS, Data::F64(vec![model.residuals.rms].into()));
+    group.attribute(name::REDUCED_CHI_SQUARE, Data::F64(vec![model.residuals.reduced_chi_square].into()));
+    group.attribute(name::RESIDUAL_COUNT, Data::U64(vec![model.residuals.count].into()));
+    group.attribute(name::RESIDUAL_LEFT_OUT, Data::U64(vec![model.residuals.left_out].into()));
     emission_axis(&mut group, &model.emission)?;
     covariance(&mut group, model)?;
     if !model.identifiability.is_empty() {
@@ -66,16 +66,16 @@ fn term(term: &FittedTerm) -> Result<Group, EncodeError> {
 }
 
 fn parameter(group: &mut Group, name: &str, parameter: &FittedParameter) -> Result<(), EncodeError> {
-    let value = group.vector(name, Data::F64(parameter.value.clone()), "");
+    let value = group.vector(name, Data::F64(parameter.value.clone().into()), "");
     value.checked_text(name::PARAMETER_NAME, &parameter.name)?.checked_text(name::UNITS, &parameter.unit)?;
     let axis = format!("{name}{}", name::INDEX);
-    let uncertainty = Data::F64(parameter.standard_uncertainty.clone());
+    let uncertainty = Data::F64(parameter.standard_uncertainty.clone().into());
     group
         .vector(&format!("{name}{}", name::SUFFIX_U), uncertainty, &axis)
         .checked_text(name::UNITS, &parameter.unit)?
         .long_name("standard uncertainty (k = 1) from independent errors");
     if !parameter.shared_relative_uncertainty.is_empty() {
-        let shared = Data::F64(parameter.shared_relative_uncertainty.clone());
+        let shared = Data::F64(parameter.shared_relative_uncertainty.clone().into());
         group
             .vector(&format!("{name}{}", name::SUFFIX_SHARED), shared, &axis)
             .unit("1")
@@ -94,7 +94,7 @@ fn separability(check: &Separability) -> Group {
         (name::MEAN_OVER_INCIDENCE, &check.mean_over_incidence, name::THETA_V),
         (name::SPREAD_OVER_INCIDENCE, &check.spread_over_incidence, name::THETA_V),
     ] {
-        group.vector(name, Data::F64(values.clone()), axis);
+        group.vector(name, Data::F64(values.clone().into()), axis);
     }
     for (name, value) in [
         (name::COSINE_AMPLITUDE, check.cosine_amplitude),
@@ -102,7 +102,7 @@ fn separability(check: &Separability) -> Group {
         (name::CONSTANCY_RELATIVE_RMS, check.constancy_relative_rms),
         (name::RANK_ONE_RELATIVE_RMS, check.rank_one_relative_rms),
     ] {
-        group.attribute(name, Data::F64(vec![value]));
+        group.attribute(name, Data::F64(vec![value].into()));
     }
     group
 }

@@ -27,8 +27,8 @@ pub(super) fn light(light: &Light) -> Result<Group, EncodeError> {
 fn light_spectrum(group: &mut Group, spectrum: &LightSpectrum) -> Result<(), EncodeError> {
     wavelength_axis(group, &spectrum.axis)?;
     certified_factor(group, &spectrum.quantity, name::WAVELENGTH);
-    group.vector(name::VALUE_FLAG, Data::U16(spectrum.flags.clone()), name::WAVELENGTH);
-    let value = group.vector(name::VALUE, Data::F64(spectrum.values.clone()), name::WAVELENGTH);
+    group.vector(name::VALUE_FLAG, Data::U16(spectrum.flags.clone().into()), name::WAVELENGTH);
+    let value = group.vector(name::VALUE, Data::F64(spectrum.values.clone().into()), name::WAVELENGTH);
     quantity(value, &spectrum.quantity)?;
     value.checked_text(name::ANCILLARY, name::VALUE_FLAG)?;
     value_flags(group);
@@ -41,7 +41,7 @@ pub(super) fn white_reference(reference: &WhiteReference) -> Result<Group, Encod
         group.scale(name::CERTIFIED_WAVELENGTH, &reference.certified_nm, "nm", "wavelength in air");
     }
     if !reference.certified_factor.is_empty() {
-        let factor = Data::F64(reference.certified_factor.clone());
+        let factor = Data::F64(reference.certified_factor.clone().into());
         group
             .vector(name::CERTIFIED_FACTOR, factor, name::CERTIFIED_WAVELENGTH)
             .unit("1")
@@ -68,7 +68,7 @@ pub(super) fn emission_axis(group: &mut Group, axis: &EmissionAxis) -> Result<&'
             group.index_scale(name::BAND, 1);
             if let (Some(band), Some(scale)) = (band, group.dataset_mut(name::BAND)) {
                 for (name, end) in [(name::FROM_NM, band.from_nm), (name::TO_NM, band.to_nm)] {
-                    let end = Array::scalar(Data::F64(vec![end]));
+                    let end = Array::scalar(Data::F64(vec![end].into()));
                     scale.attributes.insert(name.to_owned(), end);
                 }
             }
@@ -81,12 +81,12 @@ fn wavelength_axis(group: &mut Group, axis: &WavelengthAxis) -> Result<(), Encod
     group.scale(name::WAVELENGTH, &axis.nm, "nm", "nominal emission wavelength in air");
     if !axis.actual_nm.is_empty() {
         group
-            .vector(name::WAVELENGTH_ACTUAL, Data::F64(axis.actual_nm.clone()), name::WAVELENGTH)
+            .vector(name::WAVELENGTH_ACTUAL, Data::F64(axis.actual_nm.clone().into()), name::WAVELENGTH)
             .unit("nm")
             .long_name("centre of the bandpass as calibrated");
     }
     if let Bandpass::Stated { fwhm_nm, shape, correction } = &axis.bandpass {
-        let fwhm = group.vector(name::FWHM, Data::F64(fwhm_nm.clone()), name::WAVELENGTH);
+        let fwhm = group.vector(name::FWHM, Data::F64(fwhm_nm.clone().into()), name::WAVELENGTH);
         fwhm.unit("nm").long_name("full width at half maximum of the instrument");
         fwhm.checked_text(name::SHAPE, shape.name())?.checked_text(name::CORRECTION, correction.name())?;
     }
@@ -111,15 +111,15 @@ pub(super) fn quantity(dataset: &mut Dataset, quantity: &Quantity) -> Result<(),
 pub(super) fn si_unit(dataset: &mut Dataset, kind: QuantityKind) {
     if let Some(unit) = kind.si_unit() {
         let mut put = |name: &str, array| dataset.attributes.insert(name.to_owned(), array);
-        put(name::SI_FACTOR, Array::scalar(Data::F64(vec![unit.factor])));
-        put(name::SI_EXPONENTS, Array::vector(Data::I8(unit.exponents.to_vec())));
+        put(name::SI_FACTOR, Array::scalar(Data::F64(vec![unit.factor].into())));
+        put(name::SI_EXPONENTS, Array::vector(Data::I8(unit.exponents.to_vec().into())));
     }
 }
 
 pub(super) fn certified_factor(group: &mut Group, quantity: &Quantity, axis: &str) {
     if !quantity.certified_factor.is_empty() {
         group
-            .vector(name::CERTIFIED_FACTOR, Data::F64(quantity.certified_factor.clone()), axis)
+            .vector(name::CERTIFIED_FACTOR, Data::F64(quantity.certified_factor.clone().into()), axis)
             .unit("1")
             .long_name("certified radiance factor of the reference, contained in the values");
     }

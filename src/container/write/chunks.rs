@@ -8,9 +8,9 @@ use std::io::Write as _;
 
 use flate2::Compression;
 use flate2::write::ZlibEncoder;
-use hdf5_reader::checksum::fletcher32;
 use rayon::iter::{IndexedParallelIterator, IntoParallelIterator, ParallelIterator};
 
+use super::super::checksum::fletcher32;
 use super::super::chunk_table::Placed;
 
 /// Level of deflate: beyond it files hardly shrink.

@@ -4,9 +4,11 @@
 //! dimension scales, and with those two in hand little would be left for it to do.
 #![allow(unsafe_code)]
 
+use std::borrow::Cow;
 use std::ffi::{CString, c_char, c_void};
 use std::ptr;
 
+use hdf5_reader::checksum::jenkins_lookup3;
 use hdf5_sys::{h5, h5a, h5d, h5e, h5f, h5g, h5i::hid_t, h5p, h5s, h5t};
 
 use super::super::error::WriteError;
@@ -122,15 +124,25 @@ fn set_up_object(list: &Handle) -> Result<(), WriteError> {
 }
 
 impl Handle {
-    /// The bytes of a file in memory.
-    pub(super) fn image(&self) -> Result<Vec<u8>, WriteError> {
-        // SAFETY: a null buffer asks for the size; then the buffer has that size.
+    /// A look at the bytes of a file in memory: those of `H5Fget_file_image`, which copies them and clears the marks of an
+    /// open file. Here the marks are cleared where they are.
+    pub(super) fn image<R>(&self, look: impl FnOnce(&[u8]) -> R) -> Result<R, WriteError> {
+        // SAFETY: a null buffer asks for the size. The handle of a file of the core driver is the address of its pointer
+        // to its memory, which holds at least the allocated size after a flush and stays as it is during the look,
+        // because no other call of the library runs.
         unsafe {
             done(h5f::H5Fflush(self.id, h5f::H5F_scope_t::H5F_SCOPE_GLOBAL), "H5Fflush", "/")?;
             let size = h5f::H5Fget_file_image(self.id, ptr::null_mut(), 0);
-            let mut image = vec![0_u8; usize::try_from(size).map_err(|_| refused("H5Fget_file_image", "/"))?];
-            let written = h5f::H5Fget_file_image(self.id, image.as_mut_ptr().cast(), image.len());
-            if written == size { Ok(image) } else { Err(refused("H5Fget_file_image", "/")) }
+            let size = usize::try_from(size).map_err(|_| refused("H5Fget_file_image", "/"))?;
+            let mut memory: *mut c_void = ptr::null_mut();
+            done(h5f::H5Fget_vfd_handle(self.id, h5p::H5P_DEFAULT, &raw mut memory), "H5Fget_vfd_handle", "/")?;
+            let memory = memory.cast::<*mut u8>();
+            if memory.is_null() || (*memory).is_null() {
+                return Err(refused("H5Fget_vfd_handle", "/"));
+            }
+            let image = std::slice::from_raw_parts_mut(*memory, size);
+            clear_marks(image).ok_or_else(|| refused("superblock", "/"))?;
+            Ok(look(image))
         }
     }
 
@@ -185,7 +197,7 @@ impl Handle {
     /// Writes the values of this dataset as chunks that are encoded already.
     fn write_chunks(
         &self,
-        element: &Element,
+        element: &Element<'_>,
         shape: &[usize],
         nan_fill: bool,
         source: Source<'_>,
@@ -239,6 +251,19 @@ impl Handle {
     }
 }
 
+/// Clears the marks of an open file in a superblock of version 2 (HDF5 File Format Specification, II.A) and sums it up
+/// again. `None` for another superblock.
+fn clear_marks(image: &mut [u8]) -> Option<()> {
+    const VERSION: usize = 8;
+    const MARKS: usize = 11;
+    const CHECKSUM: usize = 44;
+    (*image.get(VERSION)? == 2).then_some(())?;
+    *image.get_mut(MARKS)? = 0;
+    let sum = jenkins_lookup3(image.get(..CHECKSUM)?).to_le_bytes();
+    image.get_mut(CHECKSUM..CHECKSUM + sum.len())?.copy_from_slice(&sum);
+    Some(())
+}
+
 fn space(shape: &[usize], path: &str) -> Result<Handle, WriteError> {
     let lengths: Vec<u64> = shape.iter().map(|length| *length as u64).collect();
     // SAFETY: `lengths` has as many entries as the rank says.
@@ -279,14 +304,14 @@ fn creation_list(storage: &Storage, path: &str) -> Result<Handle, WriteError> {
 }
 
 /// Values with their type, as the library takes them.
-struct Element {
+struct Element<'a> {
     kind: Handle,
-    bytes: Vec<u8>,
+    bytes: Cow<'a, [u8]>,
     width: usize,
 }
 
-impl Element {
-    fn of(data: &Data, path: &str) -> Result<Self, WriteError> {
+impl<'a> Element<'a> {
+    fn of(data: &'a Data, path: &str) -> Result<Self, WriteError> {
         if let Data::Text(texts) = data {
             return Self::texts(texts, path);
         }
@@ -303,8 +328,7 @@ impl Element {
             Data::F64(_) => *h5t::H5T_IEEE_F64LE,
             Data::Text(_) | Data::Other(_) => return Err(refused("a type without values", path)),
         };
-        let mut bytes = Vec::with_capacity(data.len() * 8);
-        data.for_each_byte_block(|block| bytes.extend_from_slice(block));
+        let bytes = data.bytes();
         // SAFETY: a copy of an open type.
         let kind = handle(unsafe { h5t::H5Tcopy(id) }, h5t::H5Tclose, "H5Tcopy", path)?;
         let width = bytes.len() / data.len().max(1);
@@ -324,7 +348,7 @@ impl Element {
             done(h5t::H5Tset_size(kind.id, size), "H5Tset_size", path)?;
             done(h5t::H5Tset_strpad(kind.id, h5t::H5T_str_t::H5T_STR_NULLPAD), "H5Tset_strpad", path)?;
             done(h5t::H5Tset_cset(kind.id, h5t::H5T_cset_t::H5T_CSET_UTF8), "H5Tset_cset", path)?;
-            Ok(Self { kind, bytes, width: size })
+            Ok(Self { kind, bytes: bytes.into(), width: size })
         }
     }
 }

@@ -33,10 +33,18 @@ pub(super) struct Plan<'a> {
 /// # Errors
 /// [`WriteError::Library`] when libhdf5 refuses something.
 pub(super) fn to_bytes(root: &Group, plan: Plan<'_>) -> Result<Vec<u8>, WriteError> {
+    with_image(root, plan, <[u8]>::to_vec)
+}
+
+/// The same bytes for one look, without a copy of them.
+///
+/// # Errors
+/// As [`to_bytes`].
+pub(super) fn with_image<R>(root: &Group, plan: Plan<'_>, look: impl FnOnce(&[u8]) -> R) -> Result<R, WriteError> {
     exclusively(|| {
         let file = memory_file()?;
         write_group(&file, root, "", plan)?;
-        file.image()
+        file.image(look)
     })
 }
 
@@ -76,7 +84,7 @@ fn write_dataset(
         written.make_scale(name)?;
     }
     if nan_fill {
-        written.write_attribute("_FillValue", &Array::scalar(Data::F64(vec![f64::NAN])))?;
+        written.write_attribute("_FillValue", &Array::scalar(Data::F64(vec![f64::NAN].into())))?;
     }
     write_attributes(&written, &plan.signed(&dataset.attributes, path))?;
     Ok(written)

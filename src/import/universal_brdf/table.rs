@@ -63,8 +63,9 @@ pub(super) fn measurement(
     }
     let mut measurement =
         Measurement::new(common.id.clone(), Role::Sample, common.quantity.clone(), emission, rows.acquisitions, values);
-    measurement.flags = flags;
-    measurement.uncertainty = Uncertainty { standard: sigma, ..Uncertainty::default() };
+    measurement.flags = flags.into_shared();
+    measurement.uncertainty =
+        Uncertainty { standard: sigma.map(|sigma| sigma.into_shared()), ..Uncertainty::default() };
     measurement.excitations = rows.excitations;
     Ok(measurement)
 }

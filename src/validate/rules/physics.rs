@@ -45,7 +45,7 @@ fn report(found: &mut Finder, path: &str, cell: Cell, worst: &Worst<impl Copy>, 
 const ALL: [CorrelatedOver; 3] = [CorrelatedOver::Wavelengths, CorrelatedOver::Acquisitions, CorrelatedOver::All];
 
 pub(in super::super) fn negative(context: &Context<'_>, found: &mut Finder) {
-    for (path, measurement) in context.measurements() {
+    for (path, measurement, _) in context.counted().filter(|(_, _, census)| census.values.negative) {
         let Some(standard) = &measurement.uncertainty.standard else { continue };
         let judged = |((value, sigma), flags): &((&f64, &f64), &u16)| {
             value.is_finite() && **sigma > 0.0 && sigma.is_finite() && **flags == 0

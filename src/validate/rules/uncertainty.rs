@@ -1,6 +1,7 @@
 //! Is there an uncertainty, and can it be one?
 
 use super::super::Context;
+use super::super::census::Census;
 use super::super::finding::Finder;
 use crate::container::layout::name;
 use crate::dataset::{Measurement, Place, Role};
@@ -15,7 +16,7 @@ pub(in super::super) fn missing(context: &Context<'_>, found: &mut Finder) {
 }
 
 pub(in super::super) fn negative(context: &Context<'_>, found: &mut Finder) {
-    for (path, measurement) in context.measurements() {
+    for (path, measurement, _) in context.counted().filter(|(_, _, census)| census.sigma.negative) {
         let Some(standard) = &measurement.uncertainty.standard else { continue };
         if let Some(((row, column), value)) = standard.indexed_iter().find(|(_, value)| **value < 0.0) {
             let place = Place::path(format!("{path}/{}", name::VALUE_U)).at_index([row, column]);
@@ -89,11 +90,12 @@ fn each_value(
     context: &Context<'_>,
     found: &mut Finder,
     expected: &str,
+    possible: impl Fn(&Census) -> bool,
     objects: impl Fn(&Measurement, f64, f64) -> Option<String>,
 ) {
-    for (path, measurement) in context.measurements() {
+    for (path, measurement, census) in context.counted() {
         let Some(standard) = &measurement.uncertainty.standard else { continue };
-        if standard.dim() != measurement.values.dim() {
+        if standard.dim() != measurement.values.dim() || !possible(&census) {
             continue;
         }
         let columns = measurement.emission.len().max(1);
@@ -114,18 +116,21 @@ pub(in super::super) fn of_value(context: &Context<'_>, found: &mut Finder) {
         context,
         found,
         "the uncertainty of the value, or a flag that it is not to be used",
+        |census| census.sigma.not_finite,
         |_, value, sigma| sigma.is_nan().then(|| format!("NaN for the value {value}")),
     );
 }
 
 pub(in super::super) fn zero(context: &Context<'_>, found: &mut Finder) {
-    each_value(context, found, "more than 0: no measurement is exact", |measurement, value, sigma| {
+    let expected = "more than 0: no measurement is exact";
+    let possible = |census: &Census| census.sigma.zero;
+    each_value(context, found, expected, possible, |measurement, value, sigma| {
         (sigma == 0.0 && measurement.uncertainty.components.is_empty()).then(|| format!("0 for the value {value}"))
     });
 }
 
 pub(in super::super) fn infinite(context: &Context<'_>, found: &mut Finder) {
-    for (path, measurement) in context.measurements() {
+    for (path, measurement, _) in context.counted().filter(|(_, _, census)| census.sigma.not_finite) {
         let Some(standard) = &measurement.uncertainty.standard else { continue };
         if let Some(((row, column), _)) = standard.indexed_iter().find(|(_, value)| value.is_infinite()) {
             let place = Place::path(format!("{path}/{}", name::VALUE_U)).at_index([row, column]);
