@@ -69,6 +69,8 @@ pub struct Settings {
     pub simulated: Option<bool>,
     /// Particulars by the names of the document's fields, as `instrument.distance-mm`.
     pub details: Vec<Detail>,
+    /// Where each key was stated, the later ones behind.
+    places: Vec<(String, Place)>,
 }
 
 /// Every key, in the spelling of the messages; `_` may stand for `-` and the other way round.
@@ -161,6 +163,7 @@ impl Settings {
             self.details.push(Detail { key: name, text: text.trim().to_owned(), place });
             return Ok(());
         }
+        self.places.push((name, place.clone()));
         self.set(key, text).map_err(|why| {
             let (found, expected) = match why {
                 KeyFault::Unknown => {
@@ -293,7 +296,13 @@ impl Settings {
         );
         // What is stated later goes before.
         merged.details.extend(self.details);
+        merged.places.extend(self.places);
         merged
+    }
+
+    /// Where a key was stated, in the spelling of [`KEYS`]; `otherwise` where it was not.
+    pub(crate) fn place_of(&self, key: &str, otherwise: Place) -> Place {
+        self.places.iter().rev().find(|(known, _)| known == key).map_or(otherwise, |(_, place)| place.clone())
     }
 }
 

@@ -52,7 +52,7 @@ pub(super) fn plan(source: &Source, path: &Path, options: &Options, notes: &mut 
     };
     if !rows.has("file") {
         return Err(ImportError::Malformed(fault(
-            source.at_line(1),
+            source.at_line(rows.header),
             "no column `file`",
             format!("columns of: {}", COLUMNS.join(", ")),
             "name the files",

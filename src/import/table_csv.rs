@@ -93,7 +93,7 @@ pub(super) fn document(source: &Source, options: &Options, notes: &mut Notes) ->
     let settings = options.settings.clone().or(&settings);
     if !rows.has("value") {
         return Err(ImportError::Malformed(fault(
-            source.at_line(1),
+            source.at_line(rows.header),
             "no column `value`",
             format!("columns of: {}", COLUMNS.join(", ")),
             "name the column of the numbers `value`",
@@ -227,7 +227,7 @@ impl Table {
     fn check_angles(&self, source: &Source, settings: &Settings, notes: &mut Notes) -> Result<(), ImportError> {
         let geometries: Vec<_> = self.acquisitions.iter().filter_map(|acquisition| acquisition.geometry).collect();
         if let Some(Angles::Signed(habit)) = settings.angles {
-            check_habit(&geometries, habit, source.at_line(1))?;
+            check_habit(&geometries, habit, settings.place_of("angles", source.at_line(1)))?;
         }
         scan::note_coverage(&geometries, source.at_line(1), notes);
         Ok(())
@@ -322,7 +322,7 @@ fn certified(settings: &Settings, source: &Source) -> Result<Vec<f64>, ImportErr
     let Some(text) = &settings.certified_factor else { return Ok(Vec::new()) };
     value(text).map(|factor| vec![factor]).ok_or_else(|| {
         ImportError::Call(fault(
-            source.at_line(1),
+            settings.place_of("certified-factor", source.at_line(1)),
             format!("{} as the certified factor of a table", quoted(text)),
             "one number",
             "state one number, or leave the key out",

@@ -74,8 +74,9 @@ fn each(
 
 pub(in super::super) fn part_of_kind(context: &Context<'_>, found: &mut Finder) {
     each(context, found, name::PART, |quantity| {
-        let wrong = quantity.kind == QuantityKind::BispectralLuminescentRadianceFactor
-            && !matches!(quantity.part, Part::Luminescent | Part::Unstated);
+        use QuantityKind::{BispectralLuminescentRadianceFactor, Brrdf};
+        let density = matches!(quantity.kind, BispectralLuminescentRadianceFactor | Brrdf);
+        let wrong = density && !matches!(quantity.part, Part::Luminescent | Part::Unstated);
         wrong.then(|| (format!("`{}`", quantity.part), "`luminescent`: a density has no elastic part, which is a line"))
     });
 }
@@ -112,8 +113,14 @@ pub(in super::super) fn reference_of_kind(context: &Context<'_>, found: &mut Fin
                 | QuantityKind::BandRadiance
                 | QuantityKind::Luminance
         );
+        let distribution = matches!(quantity.kind, QuantityKind::Brdf | QuantityKind::Brrdf);
         let relative = !matches!(quantity.reference, Reference::None | Reference::Unstated);
-        (absolute && relative).then(|| (format!("`{}`", quantity.reference), "`none`: it is no ratio"))
+        let expected = if distribution {
+            "`none`: it is relative to the irradiance of the surface, and no reference is left in it"
+        } else {
+            "`none`: it is no ratio"
+        };
+        ((absolute || distribution) && relative).then(|| (format!("`{}`", quantity.reference), expected))
     });
 }
 
