@@ -92,3 +92,21 @@ fn fluorescence_is_no_albedo() {
     document.measurements[1].quantity.part = bbrf::quantity::Part::Total;
     assert!(!found(&bbrf::container::document_bytes(&document).unwrap().0).contains(&"model.albedo"));
 }
+
+/// Who is to mend a file reads in the finding what belongs there.
+#[test]
+fn a_finding_says_what_stands_there_and_what_belongs_there() {
+    for (rule, what, found, expected) in [
+        ("structure.attributes", "flag-meanings-in-another-order", "`one two`", "not-measured-by-design"),
+        ("structure.attributes", "coordinates-left-out", "`theta_i phi_i`", "`theta_i phi_i theta_v phi_v`"),
+        ("structure.attributes", "flag-masks-shifted", "2, 4, 8", "1, 2, 4, 8"),
+        ("quantity.other-units", "angles-in-radians", "`radian`", "`degree`"),
+        ("structure.complete", "no-stated-mask", "nothing", "uint8"),
+    ] {
+        let fault = FAULTS.iter().find(|fault| fault.rule == rule && fault.what == what).unwrap();
+        let report = validate_bytes(&fault.bytes());
+        let finding = report.findings.iter().find(|finding| finding.rule.ends_with(rule)).unwrap();
+        assert_eq!(finding.found, found, "{rule} {what}");
+        assert!(finding.expected.contains(expected), "{rule} {what}: {}", finding.expected);
+    }
+}

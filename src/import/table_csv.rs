@@ -16,6 +16,7 @@
 //!    | `band_nm` | the band of values without a wavelength, as `500-620` |
 //!    | `title`, `sample`, `material`, `mark`, `license`, `citation`, `id`, `instrument`, `serial` | text |
 //!    | `simulated` | `true` or `false` |
+//!    | `coverage-factor` | k of the column `sigma`, which is divided by it; 1 where it is not stated |
 //!
 //! 2. **A header** with the names of the columns, in any order:
 //!
@@ -25,7 +26,7 @@
 //!    | `excitation_nm` | optional, nm |
 //!    | `emission_nm` | optional, nm; without it every value is one of a band |
 //!    | `value` | empty only where `flag` says why |
-//!    | `sigma` | optional: standard uncertainty, k = 1; an empty field is unknown |
+//!    | `sigma` | optional: standard uncertainty (k = 1, or the key `coverage-factor`); an empty field is unknown |
 //!    | `flag` | optional: names joined by `\|` or blanks, as `below-detection\|noisy` |
 //!    | `order`, `repeat`, `time`, `exposure_ms` | optional, of the acquisition |
 //!
@@ -51,7 +52,7 @@ use super::rows::{Row, Rows};
 use super::source::Source;
 use super::{Options, scan};
 use crate::dataset::{Acquisition, Conditions, Document, Id, Measurement, Role};
-use crate::quantity::{EmissionAxis, Flag, Flags, Uncertainty, WavelengthAxis};
+use crate::quantity::{EmissionAxis, Finite, Flag, Flags, Statement, Uncertainty, WavelengthAxis};
 
 pub(super) const COLUMNS: &[&str] = &[
     "theta_i_deg",
@@ -282,6 +283,12 @@ impl Table {
         }
         let mut quantity = settings.quantity();
         quantity.certified_factor = certified(settings, source)?;
+        let expanded = settings.coverage_factor.filter(|factor| *factor != 1.0);
+        if let Some(factor) = expanded {
+            sigma.mapv_inplace(|sigma| sigma / factor);
+        }
+        let coverage_factor = expanded.and_then(|factor| Finite::try_from(factor).ok());
+        let statement = Statement { coverage_factor, ..Statement::default() };
         let id = settings.id.as_deref().map_or_else(|| Id::from_title("scan"), Id::from_title);
         Ok(Measurement {
             id,
@@ -296,7 +303,7 @@ impl Table {
             acquisitions: self.acquisitions,
             values,
             flags,
-            uncertainty: Uncertainty { standard: has_sigma.then_some(sigma), ..Uncertainty::default() },
+            uncertainty: Uncertainty { standard: has_sigma.then_some(sigma), statement, ..Uncertainty::default() },
             conditions: Conditions::default(),
             direction_tests: Vec::new(),
             derivation: None,

@@ -1,8 +1,8 @@
 //! What a rule sees: the raw tree, and the document where there is one.
 
-use crate::container::Inspection;
 use crate::container::layout::{self, name};
 use crate::container::tree::{Array, Data, Dataset, Group, Object};
+use crate::container::{Inspection, as_written, in_words};
 use crate::dataset::{Document, Measurement};
 
 /// A file under inspection.
@@ -31,6 +31,15 @@ impl<'a> Context<'a> {
     pub fn measurements(&self) -> impl Iterator<Item = (String, &'a Measurement)> {
         let measurements = self.document().map_or(&[][..], |document| &document.measurements);
         measurements.iter().map(|measurement| (format!("/{}/{}", name::MEASUREMENT, measurement.id), measurement))
+    }
+
+    /// What stands at the path of an object or an attribute, and what the rest of the file calls for there.
+    #[must_use]
+    pub fn found_and_expected(&self, path: &str) -> (String, String) {
+        let expected = self.document().and_then(as_written).and_then(|tree| in_words(&tree, path));
+        let found = in_words(&self.inspection.tree, path);
+        let expected = expected.unwrap_or_else(|| "what the rest of the file calls for".to_owned());
+        (found.unwrap_or_else(|| "nothing".to_owned()), expected)
     }
 
     /// A text attribute of the root.

@@ -24,7 +24,8 @@ pub(in super::super) fn other_units(context: &Context<'_>, found: &mut Finder) {
     for mismatch in &context.inspection.mismatches {
         let Mismatch::Attribute(path) = mismatch else { continue };
         if path.ends_with("@units") && !path.ends_with(&format!("/{}@units", name::VALUE)) {
-            found.add(Place::path(path), "another unit, or none", "the unit that the standard gives it");
+            let (there, expected) = context.found_and_expected(path);
+            found.add(Place::path(path), there, expected);
         }
     }
 }
@@ -53,7 +54,8 @@ pub(in super::super) fn si_unit(context: &Context<'_>, found: &mut Finder) {
     for mismatch in &context.inspection.mismatches {
         let Mismatch::Attribute(path) = mismatch else { continue };
         if path.ends_with(&format!("@{}", name::SI_FACTOR)) || path.ends_with(&format!("@{}", name::SI_EXPONENTS)) {
-            found.add(Place::path(path), "other numbers, or none", "what the unit of the quantity is in SI");
+            let (there, expected) = context.found_and_expected(path);
+            found.add(Place::path(path), there, format!("{expected}, what the unit of the quantity is in SI"));
         }
     }
 }

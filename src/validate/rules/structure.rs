@@ -57,7 +57,12 @@ pub(in super::super) fn complete(context: &Context<'_>, found: &mut Finder) {
         Ok(_) => {
             for mismatch in &context.inspection.mismatches {
                 if let Mismatch::Absent(path) = mismatch {
-                    found.add(Place::path(path), "nothing", "what the rest of the file calls for");
+                    let (_, expected) = context.found_and_expected(path);
+                    found.add(
+                        Place::path(path),
+                        "nothing",
+                        format!("{expected}, which the rest of the file calls for"),
+                    );
                 }
             }
         }
@@ -92,7 +97,8 @@ pub(in super::super) fn attributes(context: &Context<'_>, found: &mut Finder) {
             || path.ends_with("@Conventions")
             || path == "/@bbrf_version";
         if !is_rule_of_its_own {
-            found.add(Place::path(path), "something else, or nothing", "what the rest of the file calls for");
+            let (there, expected) = context.found_and_expected(path);
+            found.add(Place::path(path), there, expected);
         }
     }
 }
