@@ -118,7 +118,7 @@ fn an_error_in_a_key_names_its_line() {
     let angles = "# angles: signed, mirror-at-equal\n";
     for (name, text, line) in [
         ("table.csv", format!("# title: t\n# certified-factor: tile\n{rows}"), 2),
-        ("header.csv", "# title: t\n# sample: s\ntheta_i_deg,phi_i_deg,value_deg\n0,0,1\n".to_owned(), 3),
+        ("header.csv", format!("# title: t\n# sample: s\n{}", rows.replace("value", "order")), 3),
         ("percent.csv", format!("# title: t\n{angles}# certified-factor: 99\n{manifest}"), 3),
         ("no-file.csv", format!("{angles}# title: t\n# certified-factor: nowhere.csv\n{manifest}"), 3),
         ("reference.csv", format!("{angles}# title: t\n# reference: fixed-geometry(10,45)\n{manifest}"), 3),
@@ -126,7 +126,8 @@ fn an_error_in_a_key_names_its_line() {
     ] {
         let input = folder.write(name, text);
         let output = folder.path().join("out.bbrf");
-        let run = bbrf().arg("import").arg(&input).arg("-o").arg(output).assert().code(2);
+        let format: &[&str] = if name == "header.csv" { &["--format", "table"] } else { &[] };
+        let run = bbrf().arg("import").arg(&input).args(format).arg("-o").arg(output).assert().code(2);
         run.stderr(contains(format!("{name}, line {line}:")));
     }
 }
