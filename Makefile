@@ -45,8 +45,13 @@ test: $(CMAKE_READY) $(VENV)/ready ## All tests: unit, property, golden, command
 	$(CARGO) build --locked --package bbrf-capi
 	BBRF_CAPI=$(TARGET)/debug BBRF_PYTHON=$(VENV)/bin/python $(CARGO) test --locked
 
-test-ecosystem: $(CMAKE_READY) $(VENV)/ready ## Heavier partners: h5dump and h5repack (Debian's hdf5-tools).
-	BBRF_PYTHON=$(VENV)/bin/python $(CARGO) test --locked --test ecosystem -- --ignored
+$(VENV)/ecosystem-ready: $(VENV)/ready tests/python/ecosystem.txt
+	$(VENV)/bin/python -m pip install --quiet --disable-pip-version-check -r tests/python/ecosystem.txt
+	touch $@
+
+# Debian's hdf5-tools, libhdf5-dev and minisign are needed; .ci/run brings them.
+test-ecosystem: $(CMAKE_READY) $(VENV)/ecosystem-ready ## Heavier partners: h5dump, h5repack, C with libhdf5, minisign, pre-commit, the GitHub action.
+	BBRF_PYTHON=$(VENV)/bin/python $(CARGO) test --locked --test ecosystem --test pipelines --test examples --test signature -- --ignored
 
 lint: $(CMAKE_READY) ## rustfmt, clippy and docs with warnings denied; the reading half without a C compiler.
 	$(CARGO) fmt --all --check

@@ -244,12 +244,18 @@ pub const FAULTS: &[Fault] = &[
     d("quantity.certified-factor-range", "per-cent", |d| density(d).quantity.certified_factor = vec![99.0]),
     d("quantity.certified-factor-range", "zero", |d| density(d).quantity.certified_factor = vec![0.0]),
     d("quantity.part-of-kind", "density-of-all", |d| density(d).quantity.part = Part::Total),
+    d("quantity.part-of-kind", "elastic-brrdf", |d| {
+        let quantity = &mut density(d).quantity;
+        (quantity.kind, quantity.reference, quantity.part) = (QuantityKind::Brrdf, Reference::None, Part::Elastic);
+    }),
     d("quantity.part-of-kind", "elastic-density", |d| density(d).quantity.part = Part::Elastic),
     d("quantity.normalised-at-of-kind", "factor-at-excitation", |d| scan_without_model(d).quantity.normalised_at = NormalisedAt::Excitation),
     d("quantity.normalised-at-of-kind", "density-at-emission", |d| density(d).quantity.normalised_at = NormalisedAt::Emission),
     d("quantity.normalised-at-of-kind", "radiance-at-emission", |d| d.measurements[0].quantity.normalised_at = NormalisedAt::Emission),
     d("quantity.reference-of-kind", "factor-without", |d| scan_without_model(d).quantity.reference = Reference::None),
     d("quantity.reference-of-kind", "radiance-with", |d| d.measurements[0].quantity.reference = Reference::SameGeometry),
+    d("quantity.reference-of-kind", "brdf-with", |d| scan_without_model(d).quantity.kind = QuantityKind::Brdf),
+    d("quantity.reference-of-kind", "brrdf-with", |d| density(d).quantity.kind = QuantityKind::Brrdf),
     d("quantity.donaldson-width", "no-width", |d| axis(matrix(d)).bandpass = Bandpass::Unstated),
 
     d("wavelength.positive", "zero", |d| axis(density(d)).nm[0] = 0.0),
@@ -377,6 +383,17 @@ pub const FAULTS: &[Fault] = &[
         d.models[0].covariance[[0, 1]] *= 100.0;
         d.models[0].covariance[[1, 0]] *= 100.0;
     }),
+    d("model.covariance-names", "twice", |d| {
+        let names = &mut d.models[0].covariance_parameters;
+        names[2] = names[1].clone();
+    }),
+    d("model.covariance-names", "of-no-term", |d| d.models[0].covariance_parameters[0] = "lambertian.roughness".into()),
+    d("model.covariance-names", "two-terms-of-a-kind", |d| {
+        let again = d.models[0].terms[1].clone();
+        d.models[0].terms.push(again);
+    }),
+    d("model.albedo", "diffuse", |d| d.models[0].terms[0].parameters[0].value = vec![1.02]),
+    d("model.albedo", "specular", |d| d.models[0].terms[1].parameters[0].value = vec![800.0]),
 
     d("calibration.date-form", "slashes", |d| d.instruments[0].calibration[0].date = Some("11/22/26".into())),
     d("calibration.date-form", "no-such-day", |d| d.instruments[0].calibration[0].expires = Some("2027-02-30".into())),
@@ -427,6 +444,24 @@ pub const FAULTS: &[Fault] = &[
         let last = scan.values.nrows() - 1;
         scan.values.row_mut(last).iter_mut().for_each(|value| *value *= 0.8);
     }),
+    d("physics.albedo", "more-than-falls-in", |d| {
+        scan_without_model(d);
+        d.measurements[1] = hemisphere(scan(d), 1.05);
+    }),
+    d("physics.albedo", "distribution-function", |d| {
+        scan_without_model(d);
+        d.measurements[1] = hemisphere(scan(d), 0.4);
+        let quantity = &mut scan(d).quantity;
+        (quantity.kind, quantity.reference) = (QuantityKind::Brdf, Reference::None);
+    }),
+
+    d("light.shape", "a-value-more", |d| spectrum(d).values.push(0.5)),
+    d("light.shape", "a-flag-less", |d| spectrum(d).flags.truncate(2)),
+    d("light.nan-without-reason", "no-flag", |d| spectrum(d).flags[2] = 0),
+    d("light.infinite", "plus", |d| spectrum(d).values[0] = f64::INFINITY),
+    d("light.negative", "a-tenth", |d| spectrum(d).values[0] = -0.1),
+    d("light.no-value", "dark", |d| spectrum(d).values.fill(0.0)),
+    d("light.covers-emission", "too-short", |d| spectrum(d).axis.nm = vec![510.0, 520.0, 530.0]),
 
     d("provenance.source-digest", "not-hexadecimal", |d| d.provenance.receipts[0].inputs[0].sha256 = "unknown".into()),
     d("provenance.source-digest", "upper-case", |d| d.provenance.receipts[0].inputs[0].sha256 = "AB".repeat(32)),
@@ -435,6 +470,37 @@ pub const FAULTS: &[Fault] = &[
     d("provenance.license", "none", |d| d.license = None),
     d("provenance.license", "a-sentence", |d| d.license = Some("free for all, ask us".into())),
 ];
+
+fn spectrum(document: &mut Document) -> &mut LightSpectrum {
+    document.lights[0].spectrum.as_mut().expect("a spectrum")
+}
+
+/// The same surface seen from all over the hemisphere under one incidence, of one value in every direction.
+pub fn hemisphere(like: &Measurement, value: f64) -> Measurement {
+    let mut rows = Vec::new();
+    for ring in 0..6_u32 {
+        for step in 0..6 * ring.max(1) {
+            let (theta, phi) = (f64::from(ring) * 16.0, f64::from(step) * 60.0 / f64::from(ring.max(1)));
+            let geometry = Geometry::from_degrees(30.0, 180.0, theta, phi).expect("angles");
+            // One row where the azimuth has no meaning.
+            if ring > 0 || step == 0 {
+                let order = u32::try_from(rows.len()).expect("few rows");
+                rows.push(Acquisition { excitation: Some(0), ..Acquisition::at(Some(geometry), order) });
+            }
+        }
+    }
+    let shape = (rows.len(), like.emission.len());
+    let mut measurement = Measurement {
+        acquisitions: rows,
+        values: ndarray::Array2::from_elem(shape, value),
+        flags: ndarray::Array2::zeros(shape),
+        derivation: None,
+        ..like.clone()
+    };
+    measurement.uncertainty.standard = Some(ndarray::Array2::from_elem(shape, value / 100.0));
+    measurement.state_directions();
+    measurement
+}
 
 fn clockwise(measurement: &mut Measurement) {
     let geometry = Geometry::from_degrees(45.0, 150.0, 20.0, 30.0).expect("angles");

@@ -18,7 +18,7 @@ use bbrf::container::{Limits, document_bytes, inspect, sign_tree, tree_bytes};
 use bbrf::dataset::Document;
 
 pub use clean::{clean, id};
-pub use faults::FAULTS;
+pub use faults::{FAULTS, hemisphere};
 
 /// How a fault is made.
 #[derive(Debug, Clone, Copy)]

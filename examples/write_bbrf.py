@@ -93,8 +93,8 @@ def main(path):
         writer.dataset(f"{scan}/{name}", angles, row, units="degree")
     columns = {"excitation": 0 * numbers, "order": numbers, "repeats": 0 * numbers + 1}
     for name, column in columns.items():
-        writer.dataset(f"{scan}/{name}", column, row)
-    writer.dataset(f"{scan}/quality_code", np.zeros(12, "int32"), row)
+        writer.dataset(f"{scan}/{name}", column, row, units="1")
+    writer.dataset(f"{scan}/quality_code", np.zeros(12, "int32"), row, units="1")
     writer.dataset(f"{scan}/exposure", np.full(12, np.nan), row, units="ms")  # not stated: NaN
     writer.dataset(f"{scan}/value", value, axes, fill=True, quantity="radiance-factor", part="total",
                    normalised_at="emission", basis="energy", reference="same-geometry", reference_light="same",
@@ -103,7 +103,7 @@ def main(path):
     writer.dataset(f"{scan}/value_flag", np.zeros((12, 5), "uint16"), axes, flag_meanings=FLAGS,
                    flag_masks=(1 << np.arange(10)).astype("uint16"))
     # Directions a second time; a laboratory takes them from where its angles come from.
-    writer.dataset(f"{scan}/direction_test_row", numbers, ["direction_test"])
+    writer.dataset(f"{scan}/direction_test_row", numbers, ["direction_test"], units="1")
     for name, angles in {"incidence": (theta_i, phi_i), "viewing": (theta_v, phi_v)}.items():
         (theta, phi), (cos, sin) = np.radians(angles), (np.cos, np.sin)
         vectors = np.stack([sin(theta) * cos(phi), sin(theta) * sin(phi), cos(theta)], axis=-1)

@@ -78,3 +78,56 @@ fn a_pipe_is_read_once() {
     run.assert().success().stdout(contains("read 1 file, 1 record"));
     writer.join().unwrap();
 }
+
+#[test]
+fn what_was_assumed_is_a_line_and_all_of_it_on_demand() {
+    let folder = Folder::new();
+    let scan = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("testdata/simulated_scan/scan.csv");
+    let said = |arguments: &[&str]| {
+        let output = folder.path().join("out.bbrf");
+        let run = bbrf().arg("import").arg(&scan).args(arguments).arg("-o").arg(output).assert().success();
+        String::from_utf8(run.get_output().stdout.clone()).unwrap()
+    };
+    let (short, long) = (said(&[]), said(&["--verbose"]));
+    let count = |text: &str, start: &str| text.lines().filter(|line| line.starts_with(start)).count();
+    assert_eq!((count(&short, "assumed:"), count(&short, "not stated:")), (1, 1), "{short}");
+    assert!(short.contains("--verbose") && !long.contains("--verbose"), "{short}");
+    assert!(count(&long, "assumed:") > 1, "{long}");
+    assert!(short.len() < long.len());
+}
+
+#[test]
+fn a_table_says_its_geometry_and_role_itself() {
+    let folder = Folder::new();
+    let table = folder.write("t.csv", "theta_i_deg,phi_i_deg,theta_v_deg,phi_v_deg,value\n0,0,45,0,0.5\n");
+    for option in [["--role", "lamp"], ["--pattern", "ti{theta_i}_tv{theta_v}.txt"], ["--geometry", "0,0,10,0"]] {
+        let output = folder.path().join("out.bbrf");
+        let run = bbrf().arg("import").arg(&table).args(option).arg("-o").arg(&output).assert().code(2);
+        run.stderr(contains(option[0]).and(contains("a table")));
+        assert!(!output.exists());
+    }
+}
+
+#[test]
+fn an_error_in_a_key_names_its_line() {
+    let folder = Folder::new();
+    let rows = "theta_i_deg,phi_i_deg,theta_v_deg,phi_v_deg,value\n0,0,45,0,0.5\n";
+    folder.write("white.txt", good(2.0));
+    folder.write("a.txt", good(1.0));
+    let manifest = "file,role,theta_i_deg,theta_v_deg\nwhite.txt,white,0,45\na.txt,sample,0,10\n";
+    let angles = "# angles: signed, mirror-at-equal\n";
+    for (name, text, line) in [
+        ("table.csv", format!("# title: t\n# certified-factor: tile\n{rows}"), 2),
+        ("header.csv", format!("# title: t\n# sample: s\n{}", rows.replace("value", "order")), 3),
+        ("percent.csv", format!("# title: t\n{angles}# certified-factor: 99\n{manifest}"), 3),
+        ("no-file.csv", format!("{angles}# title: t\n# certified-factor: nowhere.csv\n{manifest}"), 3),
+        ("reference.csv", format!("{angles}# title: t\n# reference: fixed-geometry(10,45)\n{manifest}"), 3),
+        ("coverage.csv", format!("{angles}# title: t\n# coverage-factor: 2\n{manifest}"), 3),
+    ] {
+        let input = folder.write(name, text);
+        let output = folder.path().join("out.bbrf");
+        let format: &[&str] = if name == "header.csv" { &["--format", "table"] } else { &[] };
+        let run = bbrf().arg("import").arg(&input).args(format).arg("-o").arg(output).assert().code(2);
+        run.stderr(contains(format!("{name}, line {line}:")));
+    }
+}

@@ -6,7 +6,7 @@
 mod conformance;
 
 use bbrf::validate::{CLAUSES, RULES, Severity, Status, rule, validate_bytes};
-use conformance::{FAULTS, clean_bytes, found};
+use conformance::{FAULTS, clean, clean_bytes, found, hemisphere};
 
 #[test]
 fn the_clean_file_is_left_alone() {
@@ -66,4 +66,47 @@ fn a_finding_of_physics_has_its_z_score() {
     let finding = report.findings.iter().find(|finding| finding.rule.ends_with("physics.negative")).unwrap();
     assert!(finding.z.unwrap() > 10.0 && finding.severity == Severity::Warning, "{finding:#?}");
     assert_eq!(finding.place.index, [0, 20]);
+}
+
+/// A surface that reflects nearly all light, and one that is known too badly to say that it reflects more.
+#[test]
+fn an_albedo_within_its_uncertainty_is_left_alone() {
+    let of = |value: f64, factor: f64| {
+        let mut document = clean();
+        document.models.clear();
+        let mut measurement = hemisphere(&document.measurements[1], value);
+        measurement.uncertainty.standard.as_mut().unwrap().mapv_inplace(|sigma| sigma * factor);
+        document.measurements[1] = measurement;
+        found(&bbrf::container::document_bytes(&document).unwrap().0).contains(&"physics.albedo")
+    };
+    assert!(!of(0.99, 1.0));
+    assert!(!of(1.05, 20.0), "a value of 1.05 with an uncertainty of 0.21");
+    assert!(of(1.05, 1.0));
+}
+
+/// A total may exceed 1: what is emitted here was absorbed elsewhere.
+#[test]
+fn fluorescence_is_no_albedo() {
+    let mut document = clean();
+    document.models[0].terms[0].parameters[0].value = vec![1.4];
+    document.measurements[1].quantity.part = bbrf::quantity::Part::Total;
+    assert!(!found(&bbrf::container::document_bytes(&document).unwrap().0).contains(&"model.albedo"));
+}
+
+/// Who is to mend a file reads in the finding what belongs there.
+#[test]
+fn a_finding_says_what_stands_there_and_what_belongs_there() {
+    for (rule, what, found, expected) in [
+        ("structure.attributes", "flag-meanings-in-another-order", "`one two`", "not-measured-by-design"),
+        ("structure.attributes", "coordinates-left-out", "`theta_i phi_i`", "`theta_i phi_i theta_v phi_v`"),
+        ("structure.attributes", "flag-masks-shifted", "2, 4, 8", "1, 2, 4, 8"),
+        ("quantity.other-units", "angles-in-radians", "`radian`", "`degree`"),
+        ("structure.complete", "no-stated-mask", "nothing", "uint8"),
+    ] {
+        let fault = FAULTS.iter().find(|fault| fault.rule == rule && fault.what == what).unwrap();
+        let report = validate_bytes(&fault.bytes());
+        let finding = report.findings.iter().find(|finding| finding.rule.ends_with(rule)).unwrap();
+        assert_eq!(finding.found, found, "{rule} {what}");
+        assert!(finding.expected.contains(expected), "{rule} {what}: {}", finding.expected);
+    }
 }

@@ -167,17 +167,17 @@ fn c_compiler() -> Option<Command> {
 }
 
 #[test]
+#[ignore = "needs libhdf5-dev; make test-ecosystem"]
 fn the_example_in_c_reads_what_we_write() {
-    let Some(mut compiler) = c_compiler() else {
-        eprintln!("skipped: neither h5cc nor `pkg-config hdf5` is here (Debian: libhdf5-dev)");
-        return;
-    };
+    let mut compiler =
+        c_compiler().unwrap_or_else(|| panic!("neither h5cc nor `pkg-config hdf5` is here (Debian: libhdf5-dev)"));
     let folder = tempfile::tempdir().unwrap();
     let (program, file) = (folder.path().join("read_bbrf"), folder.path().join("small.bbrf"));
     // Libraries go behind what uses them.
     let arguments: Vec<_> = compiler.get_args().map(ToOwned::to_owned).collect();
     let compiler = compiler.arg(example("read_bbrf.c")).arg("-o").arg(&program).args(arguments);
-    let output = compiler.output().unwrap();
+    // h5cc leaves its object file where it runs.
+    let output = compiler.current_dir(folder.path()).output().unwrap();
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let document = documents::small();
     write_file(&document, &file).unwrap();

@@ -134,3 +134,19 @@ fn the_command_lists_what_is_lost_and_does_not_overwrite_its_input() {
     let stderr = predicates::str::contains("not in the table: the shared uncertainty component `certificate`");
     export("csv", &folder.path().join("a.csv")).assert().success().stderr(stderr);
 }
+
+/// A column of uncertainties alone leaves open whether they are expanded.
+#[test]
+fn a_table_says_that_its_uncertainties_are_standard() {
+    let document = documents::small();
+    let measurement = document.measurement("scan").unwrap();
+    let text = |measurement: &Measurement| {
+        let mut text = Vec::new();
+        table_csv::write(&document, measurement, &mut text).unwrap();
+        String::from_utf8(text).unwrap()
+    };
+    assert!(measurement.uncertainty.standard.is_some());
+    assert!(text(measurement).lines().any(|line| line == "# coverage-factor: 1"));
+    let without = Measurement { uncertainty: Uncertainty::default(), ..measurement.clone() };
+    assert!(!text(&without).contains("coverage"));
+}

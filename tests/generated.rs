@@ -9,7 +9,8 @@ mod spec;
 
 use std::path::Path;
 
-use bbrf::container::{digest, document_bytes};
+use bbrf::container::tree::{Data, Object};
+use bbrf::container::{digest, document_bytes, document_tree};
 use bbrf::validate::{CLAUSES, Status, validate_bytes};
 
 /// Compares files of a folder with what the code gives, or writes them.
@@ -93,4 +94,22 @@ fn every_demand_names_its_rule_and_every_rule_is_in_the_text() {
     for (name, _) in spec::tables() {
         assert!(text.contains(&format!("tables/{name}.md")), "tables/{name}.md is not referred to");
     }
+}
+
+/// Who opens a file in a viewer sees of every array what it is, and of numbers in which unit.
+#[test]
+fn every_dataset_says_what_it_is_and_in_which_unit() {
+    let tree = document_tree(&spec::full::full()).unwrap();
+    let mut silent = Vec::new();
+    tree.visit("", &mut |path, object| {
+        let Object::Dataset(dataset) = object else { return };
+        let has = |attribute: &str| dataset.attributes.contains_key(attribute);
+        // Bit masks have no unit, and each element of a covariance has another.
+        let number =
+            !matches!(dataset.array.data, Data::Text(_)) && !has("flag_masks") && !path.ends_with("/covariance");
+        if !path.starts_with("/extension/") && (!has("long_name") || number && !has("units")) {
+            silent.push(path.to_owned());
+        }
+    });
+    assert_eq!(silent, Vec::<String>::new());
 }

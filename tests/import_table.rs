@@ -91,3 +91,18 @@ fn tables_of_spreadsheets_are_read() {
         assert_eq!(format!("{:?}", read(text).unwrap().measurements), expected);
     }
 }
+
+#[test]
+fn an_expanded_uncertainty_is_divided_by_its_factor_once() {
+    let table =
+        |key: &str| format!("{key}theta_i_deg,phi_i_deg,theta_v_deg,phi_v_deg,value,sigma\n0,0,45,0,0.5,0.02\n");
+    for (key, sigma, stated) in
+        [("", 0.02, None), ("# coverage-factor: 1\n", 0.02, None), ("# coverage-factor: 2\n", 0.01, Some(2.0))]
+    {
+        let document = read(&table(key)).unwrap();
+        let uncertainty = &document.measurements[0].uncertainty;
+        assert_eq!(uncertainty.standard.as_ref().unwrap()[(0, 0)], sigma, "{key}");
+        assert_eq!(uncertainty.statement.coverage_factor.map(bbrf::quantity::Finite::get), stated);
+    }
+    says(&table("# coverage-factor: 0\n"), &["line 1", "positive"]);
+}

@@ -69,3 +69,33 @@ fn a_signature_holds_for_every_copy_of_the_content_and_for_nothing_else() {
         assert!(verifies(folder.path(), &copy), "{}", copy.display());
     }
 }
+
+fn minisign(folder: &Path, arguments: &[&str]) -> bool {
+    let mut command = Command::new("minisign");
+    command.current_dir(folder).args(arguments).stdin(Stdio::null());
+    command.output().unwrap().status.success()
+}
+
+#[test]
+#[ignore = "needs minisign; make test-ecosystem"]
+fn minisign_vouches_for_every_copy_of_the_content_and_for_nothing_else() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    fs::write(at("scan.bbrf"), clean_bytes()).unwrap();
+    assert!(minisign(folder.path(), &["-G", "-W", "-p", "key.pub", "-s", "key"]));
+    fs::write(at("scan.digest"), digest(&at("scan.bbrf"))).unwrap();
+    assert!(minisign(folder.path(), &["-S", "-s", "key", "-m", "scan.digest"]));
+    let verifies = |file: &Path| {
+        fs::write(at("copy.digest"), digest(file)).unwrap();
+        let arguments = ["-V", "-m", "copy.digest", "-x", "scan.digest.minisig", "-p", "key.pub"];
+        minisign(folder.path(), &arguments)
+    };
+    // Another chunk index and another size of the file, the same content.
+    let repacked = at("repacked.bbrf");
+    let status = Command::new("h5repack").args(["-f", "NONE"]).arg(at("scan.bbrf")).arg(&repacked).status().unwrap();
+    assert!(status.success() && verifies(&repacked));
+    let mut changed = clean();
+    changed.measurements[0].values[(0, 0)] += 1e-9;
+    fs::write(at("changed.bbrf"), document_bytes(&changed).unwrap().0).unwrap();
+    assert!(!verifies(&at("changed.bbrf")), "another number");
+}

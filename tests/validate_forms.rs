@@ -212,7 +212,29 @@ fn a_baseline_leaves_out_what_is_known_and_nothing_new() {
     let folder = four();
     assert_eq!(folder.status(&["--write-baseline", "known.json", "changed.bbrf", "warned.bbrf"]), 1);
     assert_eq!(folder.status(&["--baseline", "known.json", "changed.bbrf"]), 0);
-    assert_eq!(folder.status(&["--baseline", "known.json", "--deny", "warnings", "warned.bbrf"]), 0);
+    let said = folder.said(&["--baseline", "known.json", "warned.bbrf"]);
+    assert!(said.contains("valid (0 errors, 0 warnings") && said.contains("1 known finding left out"), "{said}");
+    // Accepted as a warning, and now an error.
+    assert_eq!(folder.status(&["--baseline", "known.json", "--deny", "warnings", "warned.bbrf"]), 1);
+    assert_eq!(folder.status(&["--deny", "warnings", "--write-baseline", "errors.json", "warned.bbrf"]), 1);
+    assert_eq!(folder.status(&["--baseline", "errors.json", "--deny", "warnings", "warned.bbrf"]), 0);
+    let known: Value = serde_json::from_slice(&fs::read(folder.at("known.json")).unwrap()).unwrap();
+    let of_warned: Vec<&Value> =
+        known["known"].as_array().unwrap().iter().filter(|known| known["place"]["file"] == "warned.bbrf").collect();
+    assert_eq!(of_warned.len(), 1, "{known}");
+    let finding = of_warned[0];
+    assert_eq!(finding["severity"], "warning");
+    assert!(finding["rule"].as_str().unwrap().starts_with("bbrf:1.0:") && finding["found"].is_string(), "{finding}");
+    for (form, says) in [
+        ("json", "\"known\": 1"),
+        ("sarif", "\"knownFindingsLeftOut\": 1"),
+        ("junit", "1 known finding left out"),
+        ("markdown", "1 known finding left out"),
+    ] {
+        let output = folder.validate(&["--baseline", "known.json", "--output", form, "warned.bbrf"]);
+        let text = String::from_utf8_lossy(&output.stdout).into_owned();
+        assert!(text.contains(says), "{form}: {text}");
+    }
     let moved = folder.at("sub");
     fs::create_dir(&moved).unwrap();
     fs::copy(folder.at("changed.bbrf"), moved.join("changed.bbrf")).unwrap();

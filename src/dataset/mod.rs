@@ -9,6 +9,7 @@
 mod anonymise;
 mod calibration;
 mod conditions;
+mod convert;
 mod direction_test;
 mod document;
 mod extension;
@@ -28,6 +29,7 @@ pub mod tree;
 pub use anonymise::{Anonymised, Suspect};
 pub use calibration::Calibration;
 pub use conditions::Conditions;
+pub use convert::{Converted, NotConverted, Target, convert};
 pub use direction_test::DirectionTest;
 pub use document::{Document, DocumentError};
 pub use extension::Extension;

@@ -99,7 +99,8 @@ pub struct Model {
     pub emission: EmissionAxis,
     /// The terms.
     pub terms: Vec<FittedTerm>,
-    /// Names of the parameters in the order of the covariance, as `TERM.PARAMETER`.
+    /// Names of the parameters in the order of the covariance, as [`Model::covariance_name`] gives them: `TERM.PARAMETER`,
+    /// or `TERM:POSITION.PARAMETER` where several terms are of one kind.
     pub covariance_parameters: Vec<String>,
     /// Covariance of these parameters; NaN where the data cannot tell.
     #[serde(with = "rows_plain")]
@@ -117,4 +118,19 @@ pub struct Model {
     /// The separability check, where the scan is a table of in-plane angles.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub separability: Option<Separability>,
+}
+
+impl Model {
+    /// The name of a parameter of the term at a position in `covariance_parameters`: `TERM.PARAMETER`, and where the
+    /// model has several terms of that kind `TERM:POSITION.PARAMETER`, so that every name means one parameter.
+    #[must_use]
+    pub fn covariance_name(&self, position: usize, parameter: &str) -> String {
+        let kind = self.terms.get(position).map(|term| term.kind);
+        let of_kind = self.terms.iter().filter(|term| Some(term.kind) == kind).count();
+        match (kind, of_kind) {
+            (Some(kind), 1) => format!("{kind}.{parameter}"),
+            (Some(kind), _) => format!("{kind}:{position}.{parameter}"),
+            (None, _) => String::new(),
+        }
+    }
 }

@@ -57,7 +57,7 @@ pub(super) fn read(plan: &Plan, sample: &Measurement, notes: &mut Notes) -> Resu
     if let Some(number) = value(text) {
         // No diffuser reflects more than all; the best reach 1.02 in some geometries. 99 is a percentage.
         if !(number > 0.0 && number <= HIGHEST_FACTOR) {
-            return Err(refused(&plan.place, text));
+            return Err(refused(&stated_at(plan), text));
         }
         reference.certified_factor = vec![number];
         return Ok(Certificate { reference, factor: vec![number] });
@@ -94,6 +94,11 @@ fn refused(place: &Place, text: &str) -> ImportError {
     ))
 }
 
+/// Where the factor is stated.
+fn stated_at(plan: &Plan) -> Place {
+    plan.settings.place_of("certified-factor", plan.place.clone())
+}
+
 /// A file's name is relative to the manifest, or to where the command runs.
 fn read_file(plan: &Plan, name: &str, notes: &mut Notes) -> Result<Record, ImportError> {
     let folder = plan.place.file.as_deref().map(Path::new).and_then(Path::parent);
@@ -102,7 +107,7 @@ fn read_file(plan: &Plan, name: &str, notes: &mut Notes) -> Result<Record, Impor
         .filter(|path| path.is_file())
         .unwrap_or_else(|| Path::new(name).to_path_buf());
     if !path.is_file() {
-        return Err(refused(&plan.place, name));
+        return Err(refused(&stated_at(plan), name));
     }
     let source = Source::read(&path, &path.display().to_string())?;
     let options = Options { allow_partial_grid: true, ..Options::default() };

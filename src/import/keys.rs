@@ -67,8 +67,12 @@ pub struct Settings {
     pub time_zone: Option<String>,
     /// True when the numbers were computed and not measured.
     pub simulated: Option<bool>,
+    /// What a table's uncertainties are multiples of the standard uncertainty by; 1 where nothing is said.
+    pub coverage_factor: Option<f64>,
     /// Particulars by the names of the document's fields, as `instrument.distance-mm`.
     pub details: Vec<Detail>,
+    /// Where each key was stated, the later ones behind.
+    pub places: Vec<(String, Place)>,
 }
 
 /// Every key, in the spelling of the messages; `_` may stand for `-` and the other way round.
@@ -100,6 +104,7 @@ pub const KEYS: &[&str] = &[
     "band-nm",
     "time-zone",
     "simulated",
+    "coverage-factor",
 ];
 
 /// Why a key was not taken: what was expected.
@@ -141,6 +146,7 @@ impl Settings {
             "band-nm" => self.band = Some(band(text)?),
             "time-zone" => self.time_zone = Some(text.to_owned()),
             "simulated" => self.simulated = Some(yes_or_no(text)?),
+            "coverage-factor" => self.coverage_factor = Some(positive(text)?),
             _ => return Err(KeyFault::Unknown),
         }
         Ok(())
@@ -161,6 +167,7 @@ impl Settings {
             self.details.push(Detail { key: name, text: text.trim().to_owned(), place });
             return Ok(());
         }
+        self.places.push((name, place.clone()));
         self.set(key, text).map_err(|why| {
             let (found, expected) = match why {
                 KeyFault::Unknown => {
@@ -235,7 +242,8 @@ impl Settings {
             bandpass_nm,
             band,
             time_zone,
-            simulated
+            simulated,
+            coverage_factor
         );
         found
     }
@@ -289,11 +297,18 @@ impl Settings {
             bandpass_nm,
             band,
             time_zone,
-            simulated
+            simulated,
+            coverage_factor
         );
         // What is stated later goes before.
         merged.details.extend(self.details);
+        merged.places.extend(self.places);
         merged
+    }
+
+    /// Where a key was stated, in the spelling of [`KEYS`]; `otherwise` where it was not.
+    pub(crate) fn place_of(&self, key: &str, otherwise: Place) -> Place {
+        self.places.iter().rev().find(|(known, _)| known == key).map_or(otherwise, |(_, place)| place.clone())
     }
 }
 

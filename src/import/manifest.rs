@@ -52,7 +52,7 @@ pub(super) fn plan(source: &Source, path: &Path, options: &Options, notes: &mut 
     };
     if !rows.has("file") {
         return Err(ImportError::Malformed(fault(
-            source.at_line(1),
+            source.at_line(rows.header),
             "no column `file`",
             format!("columns of: {}", COLUMNS.join(", ")),
             "name the files",
@@ -68,6 +68,14 @@ pub(super) fn plan(source: &Source, path: &Path, options: &Options, notes: &mut 
     notes.input(input);
     note_overridden(source, &options.settings, &stated, notes);
     let settings = options.settings.clone().or(&stated);
+    if settings.coverage_factor.is_some() {
+        return Err(ImportError::Call(fault(
+            settings.place_of("coverage-factor", source.at_line(1)),
+            "the key `coverage-factor`",
+            "a manifest without it: uncertainties come from the spread of readings",
+            "take the line out; it belongs to a table with a column `sigma`",
+        )));
+    }
     let folder = path.parent().unwrap_or(Path::new("")).to_path_buf();
     // Paths from another system: tried only where the name as spelled is no file.
     rows.rewrite("file", |name| {

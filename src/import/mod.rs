@@ -166,7 +166,10 @@ pub fn import(inputs: &[PathBuf], options: &Options) -> Result<Document, ImportE
 fn import_one(path: &Path, options: &Options, notes: &mut Notes) -> Result<Document, ImportError> {
     let source = Source::read(path, &path.display().to_string())?;
     match options.format.unwrap_or_else(|| spectra::sniff(&source)) {
-        Format::TableCsv => table_csv::document(&source, options, notes),
+        Format::TableCsv => {
+            refuse_file_options(options, "a table")?;
+            table_csv::document(&source, options, notes)
+        }
         Format::UniversalBrdf => {
             refuse_file_options(options, "a Universal BRDF file")?;
             universal_brdf::document(&source, options, notes)
@@ -179,8 +182,8 @@ fn import_one(path: &Path, options: &Options, notes: &mut Notes) -> Result<Docum
     }
 }
 
-/// A manifest says which files have which role: naming some in the call as well would be two truths. So does a file of
-/// points.
+/// A manifest says which files have which role: naming some in the call as well would be two truths. So do a table and a
+/// file of points.
 fn refuse_file_options(options: &Options, what: &str) -> Result<(), ImportError> {
     let given = [
         ("--pattern", options.pattern.is_some()),

@@ -117,7 +117,7 @@ fn reference(
         return Ok(stated);
     }
     Err(ImportError::Contradiction(fault(
-        plan.place.clone(),
+        plan.settings.place_of("reference", plan.place.clone()),
         format!("the reference stated as `{stated}` where the white records are `{found}`"),
         "one convention",
         "correct the statement, or the geometry of the white records",

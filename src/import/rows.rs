@@ -14,6 +14,8 @@ pub(crate) struct Rows {
     file: String,
     /// True for fields divided by semicolons, whose numbers may have decimal commas.
     pub(crate) semicolons: bool,
+    /// The line of the column names.
+    pub(crate) header: u64,
     columns: Vec<String>,
     rows: Vec<(u64, Vec<String>)>,
 }
@@ -133,7 +135,7 @@ impl Rows {
         if rows.is_empty() {
             return Err(malformed(source.at_line(header_line), "no rows", "at least one row under the header"));
         }
-        Ok(Self { file: source.name.clone(), semicolons: false, columns, rows })
+        Ok(Self { file: source.name.clone(), semicolons: false, header: header_line, columns, rows })
     }
 
     /// Rewrites the fields of a column where `new` gives another text.

@@ -174,7 +174,7 @@ fn note_stale(plan: &mut Plan, notes: &mut Notes) {
 fn check_scan(plan: &Plan, notes: &mut Notes) -> Result<(), ImportError> {
     let geometries: Vec<Geometry> = plan.of(Role::Sample).filter_map(|entry| entry.geometry).collect();
     if let Some(Angles::Signed(habit)) = plan.settings.angles {
-        check_habit(&geometries, habit, plan.place.clone())?;
+        check_habit(&geometries, habit, plan.settings.place_of("angles", plan.place.clone()))?;
     }
     note_coverage(&geometries, plan.place.clone(), notes);
     Ok(())

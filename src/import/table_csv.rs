@@ -16,6 +16,7 @@
 //!    | `band_nm` | the band of values without a wavelength, as `500-620` |
 //!    | `title`, `sample`, `material`, `mark`, `license`, `citation`, `id`, `instrument`, `serial` | text |
 //!    | `simulated` | `true` or `false` |
+//!    | `coverage-factor` | k of the column `sigma`, which is divided by it; 1 where it is not stated |
 //!
 //! 2. **A header** with the names of the columns, in any order:
 //!
@@ -25,7 +26,7 @@
 //!    | `excitation_nm` | optional, nm |
 //!    | `emission_nm` | optional, nm; without it every value is one of a band |
 //!    | `value` | empty only where `flag` says why |
-//!    | `sigma` | optional: standard uncertainty, k = 1; an empty field is unknown |
+//!    | `sigma` | optional: standard uncertainty (k = 1, or the key `coverage-factor`); an empty field is unknown |
 //!    | `flag` | optional: names joined by `\|` or blanks, as `below-detection\|noisy` |
 //!    | `order`, `repeat`, `time`, `exposure_ms` | optional, of the acquisition |
 //!
@@ -51,7 +52,7 @@ use super::rows::{Row, Rows};
 use super::source::Source;
 use super::{Options, scan};
 use crate::dataset::{Acquisition, Conditions, Document, Id, Measurement, Role};
-use crate::quantity::{EmissionAxis, Flag, Flags, Uncertainty, WavelengthAxis};
+use crate::quantity::{EmissionAxis, Finite, Flag, Flags, Statement, Uncertainty, WavelengthAxis};
 
 pub(super) const COLUMNS: &[&str] = &[
     "theta_i_deg",
@@ -93,7 +94,7 @@ pub(super) fn document(source: &Source, options: &Options, notes: &mut Notes) ->
     let settings = options.settings.clone().or(&settings);
     if !rows.has("value") {
         return Err(ImportError::Malformed(fault(
-            source.at_line(1),
+            source.at_line(rows.header),
             "no column `value`",
             format!("columns of: {}", COLUMNS.join(", ")),
             "name the column of the numbers `value`",
@@ -227,7 +228,7 @@ impl Table {
     fn check_angles(&self, source: &Source, settings: &Settings, notes: &mut Notes) -> Result<(), ImportError> {
         let geometries: Vec<_> = self.acquisitions.iter().filter_map(|acquisition| acquisition.geometry).collect();
         if let Some(Angles::Signed(habit)) = settings.angles {
-            check_habit(&geometries, habit, source.at_line(1))?;
+            check_habit(&geometries, habit, settings.place_of("angles", source.at_line(1)))?;
         }
         scan::note_coverage(&geometries, source.at_line(1), notes);
         Ok(())
@@ -282,6 +283,12 @@ impl Table {
         }
         let mut quantity = settings.quantity();
         quantity.certified_factor = certified(settings, source)?;
+        let expanded = settings.coverage_factor.filter(|factor| *factor != 1.0);
+        if let Some(factor) = expanded {
+            sigma.mapv_inplace(|sigma| sigma / factor);
+        }
+        let coverage_factor = expanded.and_then(|factor| Finite::try_from(factor).ok());
+        let statement = Statement { coverage_factor, ..Statement::default() };
         let id = settings.id.as_deref().map_or_else(|| Id::from_title("scan"), Id::from_title);
         Ok(Measurement {
             id,
@@ -296,7 +303,11 @@ impl Table {
             acquisitions: self.acquisitions,
             values: values.into_shared(),
             flags: flags.into_shared(),
-            uncertainty: Uncertainty { standard: has_sigma.then(|| sigma.into_shared()), ..Uncertainty::default() },
+            uncertainty: Uncertainty {
+                standard: has_sigma.then(|| sigma.into_shared()),
+                statement,
+                ..Uncertainty::default()
+            },
             conditions: Conditions::default(),
             direction_tests: Vec::new(),
             derivation: None,
@@ -322,7 +333,7 @@ fn certified(settings: &Settings, source: &Source) -> Result<Vec<f64>, ImportErr
     let Some(text) = &settings.certified_factor else { return Ok(Vec::new()) };
     value(text).map(|factor| vec![factor]).ok_or_else(|| {
         ImportError::Call(fault(
-            source.at_line(1),
+            settings.place_of("certified-factor", source.at_line(1)),
             format!("{} as the certified factor of a table", quoted(text)),
             "one number",
             "state one number, or leave the key out",

@@ -5,6 +5,7 @@
 //! *Invariant:* below the horizon every term is exactly 0; where a one-sided limit exists it is returned, else a typed
 //! [`Undefined`]; whatever the parameters, never NaN and never infinite.
 
+mod albedo;
 mod denominator;
 mod distribution;
 mod fresnel;

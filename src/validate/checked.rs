@@ -20,6 +20,8 @@ pub struct Checked {
     pub file: String,
     /// What the findings amount to.
     pub status: Status,
+    /// How many findings a baseline left out.
+    pub known: usize,
     /// The findings.
     #[serde(flatten)]
     pub report: Report,
@@ -68,7 +70,10 @@ impl Checked {
             finding.place.file = Some(file.clone());
         }
         report.findings.retain_mut(|finding| grading.apply(finding));
-        Self { file, status: report.status(), report }
+        let graded = report.findings.len();
+        report.findings.retain(|finding| !grading.knows(finding));
+        let known = graded - report.findings.len();
+        Self { file, status: report.status(), known, report }
     }
 
     /// How many findings are of that severity.
@@ -88,7 +93,14 @@ impl Checked {
         let [errors, warnings, notes] =
             [(Severity::Error, "error"), (Severity::Warning, "warning"), (Severity::Info, "note")]
                 .map(|(severity, noun)| counted(self.count(severity), noun));
-        format!("{}: {verdict} ({errors}, {warnings}, {notes})", self.file)
+        let known = self.known_text().map_or_else(String::new, |known| format!("; {known}"));
+        format!("{}: {verdict} ({errors}, {warnings}, {notes}){known}", self.file)
+    }
+
+    /// That findings are not shown because a baseline knows them, where it is so.
+    #[must_use]
+    pub(super) fn known_text(&self) -> Option<String> {
+        (self.known > 0).then(|| format!("{} left out", counted(self.known, "known finding")))
     }
 }
 

@@ -3,9 +3,9 @@
 use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
 
 use super::census::Census;
-use crate::container::Inspection;
 use crate::container::layout::{self, name};
 use crate::container::tree::{Array, Data, Dataset, Group, Object};
+use crate::container::{Inspection, as_written, in_words};
 use crate::dataset::{Document, Measurement};
 
 /// A file under inspection.
@@ -41,6 +41,15 @@ impl<'a> Context<'a> {
     /// The same measurements, with what there is among their values.
     pub(super) fn counted(&self) -> impl Iterator<Item = (String, &'a Measurement, Census)> {
         self.measurements().zip(&self.census).map(|((path, measurement), census)| (path, measurement, *census))
+    }
+
+    /// What stands at the path of an object or an attribute, and what the rest of the file calls for there.
+    #[must_use]
+    pub fn found_and_expected(&self, path: &str) -> (String, String) {
+        let expected = self.document().and_then(as_written).and_then(|tree| in_words(&tree, path));
+        let found = in_words(&self.inspection.tree, path);
+        let expected = expected.unwrap_or_else(|| "what the rest of the file calls for".to_owned());
+        (found.unwrap_or_else(|| "nothing".to_owned()), expected)
     }
 
     /// A text attribute of the root.

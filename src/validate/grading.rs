@@ -1,7 +1,8 @@
 //! How grave each rule is to whoever asks: profiles, the caller's own grades, and what is known already.
 
-use std::collections::BTreeSet;
+use std::collections::BTreeMap;
 
+use super::baseline::{Baseline, is_known};
 use super::finding::{Finding, Severity};
 use super::registry::{Rule, rule};
 
@@ -83,7 +84,7 @@ pub struct Grading {
     profile: Option<&'static Profile>,
     deny_warnings: bool,
     named: Vec<(String, Option<Severity>)>,
-    known: BTreeSet<String>,
+    known: BTreeMap<String, Severity>,
 }
 
 impl Grading {
@@ -132,9 +133,15 @@ impl Grading {
         Ok(())
     }
 
-    /// Leaves out findings that are known: their fingerprints.
-    pub fn know(&mut self, fingerprints: impl IntoIterator<Item = String>) {
-        self.known.extend(fingerprints);
+    /// Leaves out findings that a baseline knows, unless they are graver now than they were then.
+    pub fn know(&mut self, baseline: &Baseline) {
+        self.known = baseline.accepted();
+    }
+
+    /// True where a graded finding is to be left out as known. That a file cannot be read is never left out.
+    pub(super) fn knows(&self, finding: &Finding) -> bool {
+        let unreadable = rule(finding.rule).is_some_and(|rule| rule.name() == "structure.hdf5");
+        !unreadable && is_known(&self.known, finding)
     }
 
     /// Grades a finding; false where it is to be left out. That a file cannot be read is never left out.
@@ -157,7 +164,7 @@ impl Grading {
             Some((_, Some(severity))) => finding.severity = *severity,
             None => {}
         }
-        !self.known.contains(&finding.fingerprint())
+        true
     }
 }
 

@@ -4,6 +4,7 @@
 //!
 //! *Invariant:* whatever the bytes, validation ends in a report; a file that cannot be read in full is never valid.
 
+mod baseline;
 mod census;
 mod checked;
 mod context;
@@ -20,6 +21,7 @@ use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
 
 use crate::container::{FileBytes, Limits, inspect};
 
+pub use baseline::{Baseline, BaselineError};
 #[cfg(feature = "write")]
 pub(crate) use checked::counted;
 pub use checked::{Checked, validate_file, validate_files};

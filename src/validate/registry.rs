@@ -3,8 +3,8 @@
 use super::Context;
 use super::finding::{Finder, Severity};
 use super::rules::{
-    acquisition, bytes, calibration, digest, flags, geometry, model, physics, portability, provenance, quantity,
-    reference, structure, uncertainty, wavelength,
+    acquisition, albedo, bytes, calibration, digest, flags, geometry, light, model, physics, portability, provenance,
+    quantity, reference, structure, uncertainty, wavelength,
 };
 
 /// A rule.
@@ -42,6 +42,7 @@ pub const CLAUSES: &[(u8, &str, &str)] = &[
     (12, "physics", "What nature does"),
     (13, "portability", "Encoding"),
     (14, "provenance", "Provenance"),
+    (15, "light", "Lights"),
 ];
 
 impl Rule {
@@ -160,13 +161,13 @@ rules! {
         "Programs take the unit from the numbers, people from the text; both must be one unit.",
         "W m-2 sr-1 nm-1 with a factor of 1", "Write the factor and the exponents of the table of quantities.";
     "BB0206" "quantity.part-of-kind" Error quantity::part_of_kind,
-        "A density over emission wavelengths cannot hold the elastic line.",
+        "A density over emission wavelengths cannot hold the elastic line; that is so for a brrdf, too.",
         "a bispectral luminescent radiance factor of part `total`", "Keep the elastic part in a measurement of its own.";
     "BB0207" "quantity.normalised-at-of-kind" Error quantity::normalised_at_of_kind,
         "Each ratio is defined at one of the two wavelengths.",
         "a radiance factor normalised at the excitation", "State the wavelength that the quantity is defined at, or correct the quantity.";
     "BB0208" "quantity.reference-of-kind" Error quantity::reference_of_kind,
-        "A factor is relative to a reference, a radiance is not.",
+        "A factor is relative to a reference, a radiance and a distribution function are not.",
         "a radiance factor with `reference` = none", "State the geometry of the reference, or correct the quantity.";
     "BB0209" "quantity.certified-factor-range" Error quantity::certified_factor_range,
         "A factor outside is a percentage, or another quantity.",
@@ -312,6 +313,12 @@ rules! {
     "BB0810" "model.correlation" Error model::correlation,
         "No two quantities are correlated by more than 1.",
         "cov[0,1] = 2 with variances of 1", "Fit again.";
+    "BB0811" "model.covariance-names" Error model::covariance_names,
+        "A name that two parameters have says nothing about either.",
+        "torrance-sparrow.roughness for each of two terms", "Name them as in torrance-sparrow:1.roughness, by the position of the term.";
+    "BB0812" "model.albedo" Warning albedo::of_models,
+        "Terms without a norm can send back more light than falls in, mostly at flat incidence.",
+        "an intensity of 30 at a roughness of 0.3", "Fit again with a normalised distribution; do not let light bounce between such surfaces.";
 
     "BB0901" "calibration.date-form" Error calibration::date_form,
         "Days are compared with the times of the rows.",
@@ -366,6 +373,9 @@ rules! {
     "BB1107" "physics.drift" Warning physics::drift,
         "The same geometry again shows what lamp and sample did in between.",
         "0.31, and 0.29 an hour later", "Correct for the drift, or let the lamp warm up.";
+    "BB1108" "physics.albedo" Warning albedo::of_measurements,
+        "Over all viewing directions a surface reflects at most what falls in.",
+        "an elastic factor of 1.2 in every direction", "Check the reference, the footprint and whether cos(theta_i) is in the values.";
 
     "BB1201" "portability.filter" Warning portability::filter,
         "A filter that a program lacks hides the values from it.",
@@ -425,4 +435,22 @@ rules! {
     "BB1304" "provenance.license" Info provenance::license,
         "Without a licence nobody may use the data.",
         "no `license`", "State the SPDX identifier of the licence.";
+
+    "BB1401" "light.shape" Error light::shape,
+        "Each wavelength of a light has one value and one flag mask.",
+        "3 wavelengths and 4 values", "Write the spectrum again with one length.";
+    "BB1402" "light.nan-without-reason" Error light::nan_without_reason,
+        "Missing is never one NaN: it says why.", "NaN with flag 0",
+        "Set the flag: not measured, invalid, below detection or saturated.";
+    "BB1403" "light.infinite" Error light::infinite,
+        "No instrument measures infinity.", "inf at 400 nm", "Replace it by NaN with its reason.";
+    "BB1404" "light.negative" Warning light::negative,
+        "Light is not negative; noise around nothing is, by little.",
+        "-0.1 in a spectrum with a peak of 1", "Check the dark signal; do not clip noise.";
+    "BB1405" "light.no-value" Warning light::no_value,
+        "A spectrum without light illuminates nothing.", "0 at every wavelength",
+        "Leave the spectrum out, or store the one that was measured.";
+    "BB1406" "light.covers-emission" Warning light::covers_emission,
+        "What a surface reflects at a wavelength is known for another light only where the spectrum of this one is known there.",
+        "a lamp known from 400 to 700 nm, factors from 380 to 780 nm", "Measure the light over the emission axis, or leave the ends of that out.";
 }

@@ -79,7 +79,7 @@ pub(crate) fn run(arguments: &Arguments) -> CommandResult {
     Ok(Outcome::Done)
 }
 
-fn chosen<'a>(document: &'a Document, id: Option<&str>) -> Result<&'a Measurement, miette::Report> {
+pub(super) fn chosen<'a>(document: &'a Document, id: Option<&str>) -> Result<&'a Measurement, miette::Report> {
     let ids: Vec<&str> = document.measurements.iter().map(|measurement| measurement.id.as_str()).collect();
     let listed = ids.join(", ");
     if let Some(id) = id {

@@ -27,6 +27,9 @@ pub(crate) struct Arguments {
     /// Print the receipt as JSON
     #[arg(long)]
     json: bool,
+    /// Print every assumption and everything that is not stated
+    #[arg(long, short, conflicts_with = "json")]
+    verbose: bool,
     #[command(flatten)]
     reading: Reading,
     #[command(flatten)]
@@ -141,7 +144,7 @@ pub(crate) fn run(arguments: &Arguments) -> CommandResult {
     if arguments.json {
         output::print_json("bbrf:import:1", &report(&document, &arguments.output))?;
     } else {
-        output::print_text(&text(&document, &arguments.output))?;
+        output::print_text(&text(&document, &arguments.output, arguments.verbose))?;
     }
     Ok(Outcome::Done)
 }
@@ -237,7 +240,7 @@ fn report<'a>(document: &'a Document, path: &Path) -> ImportResult<'a> {
     }
 }
 
-fn text(document: &Document, path: &Path) -> String {
+fn text(document: &Document, path: &Path, verbose: bool) -> String {
     let mut lines = vec![format!("wrote {}", path.display())];
     for summary in summaries(document) {
         let Summary { id, quantity, role, rows, wavelengths } = summary;
@@ -248,13 +251,58 @@ fn text(document: &Document, path: &Path) -> String {
         let records: u64 = receipt.inputs.iter().map(|input| input.records).sum();
         let plural = |count: u64, noun: &str| format!("{count} {noun}{}", if count == 1 { "" } else { "s" });
         lines.push(format!("read {}, {}", plural(receipt.inputs.len() as u64, "file"), plural(records, "record")));
-        lines.extend(receipt.assumptions.iter().map(|assumption| format!("assumed: {}", assumption.text)));
+        lines.extend(assumptions(receipt, verbose));
         lines.extend(notices(receipt));
-        if !receipt.unfilled.is_empty() {
-            lines.push(format!("not stated: {}", receipt.unfilled.join(", ")));
-        }
+        lines.extend(unfilled(receipt, verbose));
     }
     lines.join("\n")
+}
+
+/// The first words of so many assumptions are shown.
+const SHOWN: usize = 3;
+/// So many characters of each.
+const FIRST_WORDS: usize = 60;
+
+/// What was assumed: in one line, or every sentence.
+fn assumptions(receipt: &Receipt, verbose: bool) -> Vec<String> {
+    let texts = receipt.assumptions.iter().map(|assumption| assumption.text.as_str());
+    if verbose || receipt.assumptions.len() < 2 {
+        return texts.map(|text| format!("assumed: {text}")).collect();
+    }
+    let shown: Vec<String> = texts.clone().take(SHOWN).map(first_words).collect();
+    let more = if texts.len() > SHOWN { "; ..." } else { "" };
+    vec![format!(
+        "assumed: {} things: {}{more} (all with --verbose, and in `/provenance/receipts` of the file)",
+        texts.len(),
+        shown.join("; ")
+    )]
+}
+
+fn first_words(text: &str) -> String {
+    let clause = text.split([';', ':', '(']).next().unwrap_or(text).trim();
+    match clause.char_indices().nth(FIRST_WORDS) {
+        Some((end, _)) => format!("{} ...", clause[..end].trim_end()),
+        None => clause.to_owned(),
+    }
+}
+
+/// What the source does not say: how many fields, or all of them.
+fn unfilled(receipt: &Receipt, verbose: bool) -> Option<String> {
+    let paths = &receipt.unfilled;
+    match paths.len() {
+        0 => None,
+        1 => Some(format!("not stated: {}", paths[0])),
+        _ if verbose => Some(format!("not stated: {}", paths.join(", "))),
+        count => {
+            let names: Vec<&str> =
+                paths.iter().take(SHOWN).map(|path| path.rsplit('/').next().unwrap_or(path)).collect();
+            let more = if count > SHOWN { ", ..." } else { "" };
+            let names = names.join(", ");
+            Some(format!(
+                "not stated: {count} fields: {names}{more} (all with --verbose, and in `/provenance/receipts` of the file)"
+            ))
+        }
+    }
 }
 
 /// One line per kind of notice: what applies in many places is said once, with the first of them.

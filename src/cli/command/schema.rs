@@ -20,6 +20,7 @@ pub(crate) struct Arguments {
 #[must_use]
 pub(crate) fn all() -> Vec<(&'static str, Schema)> {
     let mut schemas = vec![
+        ("convert", schema_for!(super::convert::ConvertResult)),
         ("document", schema_for!(Document)),
         ("eval", schema_for!(super::eval::EvalResult)),
         ("eval-model", schema_for!(super::eval::ModelJson)),

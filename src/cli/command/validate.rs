@@ -1,18 +1,17 @@
 //! `bbrf validate`: check files against the rules.
 
-use std::collections::BTreeSet;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use miette::miette;
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
 
 use crate::cli::exit::{CommandResult, Outcome};
 use crate::cli::output::{print_message, print_text};
 use crate::cli::progress::bar;
 use crate::container::replace::write_whole;
-use crate::validate::{Checked, Grading, PROFILES, Status, UnknownRule, form, profile, repair, validate_files};
+use crate::validate::{
+    Baseline, Checked, Grading, PROFILES, Status, UnknownRule, form, profile, repair, validate_files,
+};
 
 /// Check files; exit status 0 valid, 1 not valid, 2 not readable, the worst of all.
 #[derive(Debug, clap::Args)]
@@ -38,7 +37,7 @@ pub(crate) struct Arguments {
     /// Leave out findings of this rule or group
     #[arg(long, value_name = "RULE")]
     allow: Vec<String>,
-    /// Leave out findings that this file lists as known
+    /// Leave out findings that this file lists as known, unless they are graded higher now
     #[arg(long, value_name = "FILE")]
     baseline: Option<PathBuf>,
     /// Write what is found to FILE, as known from now on
@@ -64,13 +63,6 @@ enum Form {
     Junit,
     /// For comments and notebooks
     Markdown,
-}
-
-/// Findings that are known and accepted.
-#[derive(Debug, Serialize, Deserialize, JsonSchema)]
-pub(crate) struct Baseline {
-    /// Fingerprints of rule, file and place.
-    known: BTreeSet<String>,
 }
 
 pub(crate) fn run(arguments: &Arguments) -> CommandResult {
@@ -118,16 +110,15 @@ fn grading(arguments: &Arguments) -> Result<Grading, miette::Report> {
     if let Some(path) = &arguments.baseline {
         let place = path.display();
         let text = std::fs::read_to_string(path).map_err(|error| miette!("{place}: cannot be read: {error}"))?;
-        let baseline: Baseline = serde_json::from_str(&text)
-            .map_err(|error| miette!(help = "--write-baseline makes one", "{place}: no baseline: {error}"))?;
-        grading.know(baseline.known);
+        let baseline =
+            Baseline::parse(&text).map_err(|error| miette!(help = "--write-baseline makes one", "{place}: {error}"))?;
+        grading.know(&baseline);
     }
     Ok(grading)
 }
 
 fn write_baseline(path: &Path, files: &[Checked]) -> Result<(), miette::Report> {
-    let findings = files.iter().flat_map(|file| &file.report.findings);
-    let baseline = Baseline { known: findings.map(crate::validate::Finding::fingerprint).collect() };
+    let baseline = Baseline::of(files);
     let text = serde_json::to_string_pretty(&baseline).map_err(|error| miette!("the baseline: {error}"))?;
     write_whole(path, |file| writeln!(file, "{text}")).map_err(|error| miette!("{}: {error}", path.display()))
 }

@@ -46,7 +46,7 @@ fn rows(group: &mut Group, rows: &[Acquisition]) -> Result<(), EncodeError> {
     stated_fields(group, name::STATED, stated.collect(), &layout::ROW_FIELDS, name::ACQUISITION);
     angles(group, rows);
     let mut column = |name: &str, data: Data| {
-        group.vector(name, data, name::ACQUISITION);
+        group.vector(name, data, name::ACQUISITION).unit("1");
     };
     column(name::EXCITATION, Data::U32(rows.iter().map(|row| row.excitation.unwrap_or(0)).collect()));
     column(name::ORDER, Data::U32(rows.iter().map(|row| row.order).collect()));
@@ -170,7 +170,7 @@ fn direction_tests(group: &mut Group, tests: &[DirectionTest]) {
     group.index_scale(name::DIRECTION_TEST, tests.len());
     group.index_scale(name::XYZ, 3);
     let rows = Data::U32(tests.iter().map(|test| test.row).collect());
-    group.vector(name::DIRECTION_TEST_ROW, rows, name::DIRECTION_TEST).long_name("row of the measurement");
+    group.vector(name::DIRECTION_TEST_ROW, rows, name::DIRECTION_TEST).unit("1").long_name("row of the measurement");
     type Vector = fn(&DirectionTest) -> [f64; 3];
     let vectors: [(&str, &str, Vector); 2] = [
         (name::DIRECTION_TEST_INCIDENCE, "unit vector from the surface to the source", |test| test.incidence),
@@ -194,7 +194,7 @@ fn derived_from(derivation: &Derivation) -> Result<Group, EncodeError> {
         (name::REFERENCE_GROUP, &derivation.reference_group),
         (name::ROW_REFERENCE, &derivation.row_reference),
     ] {
-        group.vector(name, Data::I32(rows.clone().into()), "");
+        group.vector(name, Data::I32(rows.clone().into()), "").unit("1");
     }
     Ok(group)
 }

@@ -30,10 +30,26 @@ pub(super) fn encode(document: &Document) -> Result<Group, EncodeError> {
     root.list(name::MEASUREMENT, &document.measurements, |part| (&part.id, encode_measurement(part)))?;
     root.list(name::MODEL, &document.models, |part| (&part.id, model::model(part)))?;
     root.groups.push((name::PROVENANCE.to_owned(), parts::provenance(&document.provenance)?));
+    describe(&mut root, "");
     if !document.extensions.is_empty() {
         root.groups.push((name::EXTENSION.to_owned(), extension::extensions(&document.extensions)?));
     }
     Ok(root)
+}
+
+/// Says of every dataset what it is, where that does not depend on the content: by the table of the layout.
+fn describe(group: &mut Group, path: &str) {
+    for (name, dataset) in &mut group.datasets {
+        if let Some(entry) = layout::find(&format!("{path}/{name}"))
+            && !dataset.attributes.contains_key(name::LONG_NAME)
+        {
+            let meaning = entry.meaning.split(';').next().unwrap_or(&entry.meaning);
+            dataset.long_name(meaning);
+        }
+    }
+    for (name, member) in &mut group.groups {
+        describe(member, &format!("{path}/{name}"));
+    }
 }
 
 /// Building a group, each kind of content in one line.

@@ -30,7 +30,7 @@ pub(super) fn model(model: &Model) -> Result<Group, EncodeError> {
         group.groups.push((format!("{}{position}", name::TERM), term(fitted)?));
     }
     if let Some(check) = &model.separability {
-        group.groups.push((name::SEPARABILITY.to_owned(), separability(check)));
+        group.groups.push((name::SEPARABILITY.to_owned(), separability(check, &model.unit)?));
     }
     Ok(group)
 }
@@ -68,6 +68,7 @@ fn term(term: &FittedTerm) -> Result<Group, EncodeError> {
 fn parameter(group: &mut Group, name: &str, parameter: &FittedParameter) -> Result<(), EncodeError> {
     let value = group.vector(name, Data::F64(parameter.value.clone().into()), "");
     value.checked_text(name::PARAMETER_NAME, &parameter.name)?.checked_text(name::UNITS, &parameter.unit)?;
+    value.checked_text(name::LONG_NAME, &parameter.name)?;
     let axis = format!("{name}{}", name::INDEX);
     let uncertainty = Data::F64(parameter.standard_uncertainty.clone().into());
     group
@@ -84,7 +85,8 @@ fn parameter(group: &mut Group, name: &str, parameter: &FittedParameter) -> Resu
     Ok(())
 }
 
-fn separability(check: &Separability) -> Group {
+/// The means are in the unit of what was fitted.
+fn separability(check: &Separability, unit: &str) -> Result<Group, EncodeError> {
     let mut group = Group::default();
     group.scale(name::THETA_I, &check.theta_i_deg, "degree", "signed in-plane angle of incidence");
     group.scale(name::THETA_V, &check.theta_v_deg, "degree", "signed in-plane angle of viewing");
@@ -94,7 +96,7 @@ fn separability(check: &Separability) -> Group {
         (name::MEAN_OVER_INCIDENCE, &check.mean_over_incidence, name::THETA_V),
         (name::SPREAD_OVER_INCIDENCE, &check.spread_over_incidence, name::THETA_V),
     ] {
-        group.vector(name, Data::F64(values.clone().into()), axis);
+        group.vector(name, Data::F64(values.clone().into()), axis).checked_text(name::UNITS, unit)?;
     }
     for (name, value) in [
         (name::COSINE_AMPLITUDE, check.cosine_amplitude),
@@ -104,5 +106,5 @@ fn separability(check: &Separability) -> Group {
     ] {
         group.attribute(name, Data::F64(vec![value].into()));
     }
-    group
+    Ok(group)
 }

@@ -16,6 +16,7 @@ pub(super) fn keys(document: &Document, measurement: &Measurement) -> Vec<(&'sta
         EmissionAxis::Band { band } => add("band-nm", band.map(|band| band.to_string())),
         EmissionAxis::Wavelengths(axis) => add("bandpass-nm", one_bandpass(&axis.bandpass).map(|nm| nm.to_string())),
     }
+    add("coverage-factor", measurement.uncertainty.standard.as_ref().map(|_| "1".to_owned()));
     keys.retain(|(_, value)| !value.is_empty());
     keys
 }

@@ -32,6 +32,9 @@ pub fn junit(files: &[Checked]) -> Result<String, FormError> {
             }
             suite.add_test_case(case);
         }
+        if let Some(known) = file.known_text() {
+            suite.set_system_out(known);
+        }
         report.add_test_suite(suite);
     }
     report.to_string().map_err(|error| FormError { form: "JUnit", why: error.to_string() })

@@ -25,7 +25,13 @@ pub fn sarif(files: &[Checked]) -> Result<String, FormError> {
         .build();
     let findings = files.iter().flat_map(|file| &file.report.findings);
     let results = findings.map(|finding| result(finding).map_err(failed)).collect::<Result<Vec<_>, _>>()?;
-    let run = Run::builder().tool(Tool::builder().driver(driver).build()).results(results).build();
+    let known: usize = files.iter().map(|file| file.known).sum();
+    let properties = serde_json::from_value::<PropertyBag>(serde_json::json!({ "knownFindingsLeftOut": known }));
+    let run = Run::builder()
+        .tool(Tool::builder().driver(driver).build())
+        .results(results)
+        .properties(properties.map_err(failed)?)
+        .build();
     let sarif = Sarif::builder()
         .version(serde_json::json!("2.1.0"))
         .schema("https://json.schemastore.org/sarif-2.1.0.json")

@@ -4,7 +4,7 @@ use super::super::Context;
 use super::super::finding::Finder;
 use crate::container::layout::name;
 use crate::container::measurement_digest;
-use crate::dataset::{Model, Place, Reduction, reduce};
+use crate::dataset::{FittedTerm, Model, Place, Reduction, reduce};
 
 fn models<'a>(context: &Context<'a>) -> impl Iterator<Item = (String, &'a Model)> {
     let models = context.document().map_or(&[][..], |document| &document.models);
@@ -57,6 +57,25 @@ pub(in super::super) fn covariance_parameters(context: &Context<'_>, found: &mut
         if names != rows {
             let place = Place::path(format!("{path}/{}", name::COVARIANCE_PARAMETERS));
             found.add(place, format!("{names} names"), format!("{rows}, one for each row of the covariance"));
+        }
+    }
+}
+
+pub(in super::super) fn covariance_names(context: &Context<'_>, found: &mut Finder) {
+    for (path, model) in models(context) {
+        let of_term = |(position, term): (usize, &FittedTerm)| {
+            let names = term.parameters.iter().map(move |parameter| model.covariance_name(position, &parameter.name));
+            names.collect::<Vec<_>>()
+        };
+        let declared: Vec<String> = model.terms.iter().enumerate().flat_map(of_term).collect();
+        let names = &model.covariance_parameters;
+        let wrong = names.iter().enumerate().find(|(index, name)| {
+            let once = declared.iter().filter(|declared| declared == name).count() == 1;
+            !once || names[..*index].contains(name)
+        });
+        if let Some((index, name)) = wrong {
+            let place = Place::path(format!("{path}/{}", name::COVARIANCE_PARAMETERS)).at_index([index]);
+            found.add(place, format!("`{name}`"), format!("each once, of: {}", declared.join(", ")));
         }
     }
 }

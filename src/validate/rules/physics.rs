@@ -12,10 +12,10 @@ use crate::container::layout::name;
 use crate::dataset::{Measurement, Place, Role, Symmetry};
 use crate::quantity::{Bandpass, Basis, CorrelatedOver, EmissionAxis, Finite, Geometry, Part, QuantityKind, Reference};
 
-type Cell = (usize, usize);
+pub(super) type Cell = (usize, usize);
 
 /// A value that may be judged, with its standard uncertainty.
-fn usable(measurement: &Measurement, (row, column): Cell) -> Option<(f64, f64)> {
+pub(super) fn usable(measurement: &Measurement, (row, column): Cell) -> Option<(f64, f64)> {
     let flags = measurement.flags_at(row, column);
     let value = measurement.values.get((row, column)).copied().filter(|value| value.is_finite())?;
     let sigma = measurement.uncertainty.standard.as_ref()?.get((row, column)).copied().filter(|sigma| *sigma > 0.0)?;
@@ -23,16 +23,23 @@ fn usable(measurement: &Measurement, (row, column): Cell) -> Option<(f64, f64)> 
 }
 
 /// Relative standard uncertainty that a value shares with others, of those kinds of sharing.
-fn shared(measurement: &Measurement, column: usize, over: &[CorrelatedOver]) -> f64 {
+pub(super) fn shared(measurement: &Measurement, column: usize, over: &[CorrelatedOver]) -> f64 {
     let components = measurement.uncertainty.components.iter().filter(|c| over.contains(&c.correlated_over));
     components.map(|component| component.relative_at(column).powi(2)).sum::<f64>().sqrt()
 }
 
-fn degrees_of_freedom(measurement: &Measurement) -> Option<f64> {
+pub(super) fn degrees_of_freedom(measurement: &Measurement) -> Option<f64> {
     measurement.uncertainty.statement.degrees_of_freedom.map(Finite::get)
 }
 
-fn report(found: &mut Finder, path: &str, cell: Cell, worst: &Worst<impl Copy>, what: String, expected: &str) {
+pub(super) fn report(
+    found: &mut Finder,
+    path: &str,
+    cell: Cell,
+    worst: &Worst<impl Copy>,
+    what: String,
+    expected: &str,
+) {
     let more = if worst.beyond > 1 {
         format!("; {} values are beyond {:.1}", worst.beyond, worst.threshold)
     } else {
@@ -42,7 +49,8 @@ fn report(found: &mut Finder, path: &str, cell: Cell, worst: &Worst<impl Copy>, 
     found.add_scored(place, format!("{what}, z = {:.1}{more}", worst.z), expected, worst.z);
 }
 
-const ALL: [CorrelatedOver; 3] = [CorrelatedOver::Wavelengths, CorrelatedOver::Acquisitions, CorrelatedOver::All];
+pub(super) const ALL: [CorrelatedOver; 3] =
+    [CorrelatedOver::Wavelengths, CorrelatedOver::Acquisitions, CorrelatedOver::All];
 
 pub(in super::super) fn negative(context: &Context<'_>, found: &mut Finder) {
     for (path, measurement, _) in context.counted().filter(|(_, _, census)| census.values.negative) {

@@ -24,7 +24,8 @@ pub(in super::super) fn other_units(context: &Context<'_>, found: &mut Finder) {
     for mismatch in &context.inspection.mismatches {
         let Mismatch::Attribute(path) = mismatch else { continue };
         if path.ends_with("@units") && !path.ends_with(&format!("/{}@units", name::VALUE)) {
-            found.add(Place::path(path), "another unit, or none", "the unit that the standard gives it");
+            let (there, expected) = context.found_and_expected(path);
+            found.add(Place::path(path), there, expected);
         }
     }
 }
@@ -53,7 +54,8 @@ pub(in super::super) fn si_unit(context: &Context<'_>, found: &mut Finder) {
     for mismatch in &context.inspection.mismatches {
         let Mismatch::Attribute(path) = mismatch else { continue };
         if path.ends_with(&format!("@{}", name::SI_FACTOR)) || path.ends_with(&format!("@{}", name::SI_EXPONENTS)) {
-            found.add(Place::path(path), "other numbers, or none", "what the unit of the quantity is in SI");
+            let (there, expected) = context.found_and_expected(path);
+            found.add(Place::path(path), there, format!("{expected}, what the unit of the quantity is in SI"));
         }
     }
 }
@@ -74,8 +76,9 @@ fn each(
 
 pub(in super::super) fn part_of_kind(context: &Context<'_>, found: &mut Finder) {
     each(context, found, name::PART, |quantity| {
-        let wrong = quantity.kind == QuantityKind::BispectralLuminescentRadianceFactor
-            && !matches!(quantity.part, Part::Luminescent | Part::Unstated);
+        use QuantityKind::{BispectralLuminescentRadianceFactor, Brrdf};
+        let density = matches!(quantity.kind, BispectralLuminescentRadianceFactor | Brrdf);
+        let wrong = density && !matches!(quantity.part, Part::Luminescent | Part::Unstated);
         wrong.then(|| (format!("`{}`", quantity.part), "`luminescent`: a density has no elastic part, which is a line"))
     });
 }
@@ -112,8 +115,14 @@ pub(in super::super) fn reference_of_kind(context: &Context<'_>, found: &mut Fin
                 | QuantityKind::BandRadiance
                 | QuantityKind::Luminance
         );
+        let distribution = matches!(quantity.kind, QuantityKind::Brdf | QuantityKind::Brrdf);
         let relative = !matches!(quantity.reference, Reference::None | Reference::Unstated);
-        (absolute && relative).then(|| (format!("`{}`", quantity.reference), "`none`: it is no ratio"))
+        let expected = if distribution {
+            "`none`: it is relative to the irradiance of the surface, and no reference is left in it"
+        } else {
+            "`none`: it is no ratio"
+        };
+        ((absolute || distribution) && relative).then(|| (format!("`{}`", quantity.reference), expected))
     });
 }
 

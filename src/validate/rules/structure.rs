@@ -3,7 +3,7 @@
 use super::super::Context;
 use super::super::finding::{Finder, Report};
 use super::super::registry::rule;
-use crate::container::layout::{self, name};
+use crate::container::layout::{self, Kind, name};
 use crate::container::{Mismatch, ReadError};
 use crate::dataset::Place;
 
@@ -53,11 +53,24 @@ pub(in super::super) fn conventions(context: &Context<'_>, found: &mut Finder) {
 
 pub(in super::super) fn complete(context: &Context<'_>, found: &mut Finder) {
     match &context.inspection.document {
-        Err(ReadError::Missing { place, expected }) => found.add((**place).clone(), "nothing", expected.as_str()),
+        Err(ReadError::Missing { place, expected }) => {
+            // The document does not say what belongs there, the layout does.
+            let form =
+                place.path.as_deref().and_then(layout::find).map_or_else(String::new, |entry| match entry.kind {
+                    Kind::Dataset(kind) | Kind::Attribute(kind) => format!(": {kind}, {}", entry.meaning),
+                    Kind::Group => format!(": {}", entry.meaning),
+                });
+            found.add((**place).clone(), "nothing", format!("{expected}{form}"));
+        }
         Ok(_) => {
             for mismatch in &context.inspection.mismatches {
                 if let Mismatch::Absent(path) = mismatch {
-                    found.add(Place::path(path), "nothing", "what the rest of the file calls for");
+                    let (_, expected) = context.found_and_expected(path);
+                    found.add(
+                        Place::path(path),
+                        "nothing",
+                        format!("{expected}, which the rest of the file calls for"),
+                    );
                 }
             }
         }
@@ -92,7 +105,8 @@ pub(in super::super) fn attributes(context: &Context<'_>, found: &mut Finder) {
             || path.ends_with("@Conventions")
             || path == "/@bbrf_version";
         if !is_rule_of_its_own {
-            found.add(Place::path(path), "something else, or nothing", "what the rest of the file calls for");
+            let (there, expected) = context.found_and_expected(path);
+            found.add(Place::path(path), there, expected);
         }
     }
 }
