@@ -492,12 +492,12 @@ pub fn hemisphere(like: &Measurement, value: f64) -> Measurement {
     let shape = (rows.len(), like.emission.len());
     let mut measurement = Measurement {
         acquisitions: rows,
-        values: ndarray::Array2::from_elem(shape, value),
-        flags: ndarray::Array2::zeros(shape),
+        values: ndarray::ArcArray2::from_elem(shape, value),
+        flags: ndarray::ArcArray2::zeros(shape),
         derivation: None,
         ..like.clone()
     };
-    measurement.uncertainty.standard = Some(ndarray::Array2::from_elem(shape, value / 100.0));
+    measurement.uncertainty.standard = Some(ndarray::ArcArray2::from_elem(shape, value / 100.0));
     measurement.state_directions();
     measurement
 }
