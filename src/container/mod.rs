@@ -37,7 +37,7 @@ pub use differing::Differing;
 pub use digest::{Digest, digest, measurement_digest};
 pub use encoding::{Construct, Encoded};
 pub use error::{EncodeError, ReadError, WriteError};
-pub(crate) use expected::{as_written, in_words};
+pub(crate) use expected::in_words;
 pub use file_bytes::FileBytes;
 pub use foreign::Foreign;
 pub use limits::Limits;

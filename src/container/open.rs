@@ -97,6 +97,8 @@ pub struct Inspection {
     pub chunks: Chunks,
     /// Encodings that the standard does not use and some reader cannot read.
     pub unusual: Vec<Encoded>,
+    /// The tree that the document would be written as, without digests.
+    pub(crate) canonical: Option<Group>,
     /// How its bytes differ from those of the writer; `None` where it was written by another program.
     pub differing: Option<Differing>,
     /// What differs from how the document would be written.
@@ -140,6 +142,7 @@ fn look(bytes: FileBytes, limits: &Limits, depth: Depth) -> Result<Inspection, R
         document,
         stored_digest,
         computed_digest,
+        canonical: canonical.map(|canonical| canonical.tree),
         differing,
         mismatches,
     })
