@@ -1,7 +1,6 @@
 //! `bbrf validate`: check files against the rules.
 
 use std::collections::BTreeSet;
-use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use miette::miette;
@@ -9,9 +8,8 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::cli::exit::{CommandResult, Outcome};
-use crate::cli::output::{print_message, print_text};
+use crate::cli::output::{print_message, print_text, write_output};
 use crate::cli::progress::bar;
-use crate::container::replace::write_whole;
 use crate::validate::{Checked, Grading, PROFILES, Status, UnknownRule, form, profile, repair, validate_files};
 
 /// Check files; exit status 0 valid, 1 not valid, 2 not readable, the worst of all.
@@ -129,7 +127,7 @@ fn write_baseline(path: &Path, files: &[Checked]) -> Result<(), miette::Report> 
     let findings = files.iter().flat_map(|file| &file.report.findings);
     let baseline = Baseline { known: findings.map(crate::validate::Finding::fingerprint).collect() };
     let text = serde_json::to_string_pretty(&baseline).map_err(|error| miette!("the baseline: {error}"))?;
-    write_whole(path, |file| writeln!(file, "{text}")).map_err(|error| miette!("{}: {error}", path.display()))
+    write_output(path, format!("{text}\n").as_bytes())
 }
 
 /// Repairs a file in place, and says what was done.
@@ -141,7 +139,7 @@ fn fix(path: &Path, dry_run: bool) -> Result<String, miette::Report> {
         Ok(None) => Ok(format!("{name}: nothing that writing it again would mend")),
         Ok(Some(mended)) if dry_run => Ok(format!("{name}: would mend {}", mended.repaired.join(", "))),
         Ok(Some(mended)) => {
-            write_whole(path, |file| file.write_all(&mended.bytes)).map_err(|error| miette!("{name}: {error}"))?;
+            write_output(path, &mended.bytes)?;
             Ok(format!("{name}: mended {}", mended.repaired.join(", ")))
         }
         Err(error) => Ok(format!("{name}: {error}")),
