@@ -11,6 +11,7 @@
 
 mod chunk_table;
 mod decode;
+mod descriptions;
 mod digest;
 mod encode;
 mod encoding;

@@ -5,6 +5,7 @@ use std::path::Path;
 
 use super::chunk_table::Chunks;
 use super::decode::decode;
+use super::descriptions;
 use super::digest::{Digest, Digests, of_lines};
 use super::encode::encode;
 use super::encoding::Encoded;
@@ -88,6 +89,8 @@ pub struct Inspection {
     /// The document as it would be written.
     #[cfg(feature = "write")]
     pub(super) canonical: Option<Canonical>,
+    /// Descriptions that differ from those that the document would be written with; no digest covers them.
+    pub described: Vec<String>,
     /// What differs from how the document would be written.
     pub mismatches: Vec<Mismatch>,
 }
@@ -105,6 +108,8 @@ pub fn inspect(bytes: &[u8], limits: &Limits) -> Result<Inspection, ReadError> {
     let computed_digest = canonical.as_ref().map(|canonical| canonical.digests.document.clone());
     let mismatches =
         canonical.as_ref().map_or_else(Vec::new, |canonical| mismatches(&tree, canonical, stored_digest.as_deref()));
+    let described =
+        canonical.as_ref().map_or_else(Vec::new, |canonical| descriptions::differing(&tree, &canonical.tree));
     let foreign = Foreign::of(&tree);
     Ok(Inspection {
         unusual,
@@ -117,6 +122,7 @@ pub fn inspect(bytes: &[u8], limits: &Limits) -> Result<Inspection, ReadError> {
         computed_digest,
         #[cfg(feature = "write")]
         canonical,
+        described,
         mismatches,
     })
 }
