@@ -25,8 +25,6 @@ pub(super) struct Placed {
 /// A chunk in a file.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Entry {
-    /// First element along every axis.
-    pub(super) first: Vec<u64>,
     /// Where its bytes are.
     pub(super) bytes: Range<usize>,
 }
@@ -53,10 +51,10 @@ fn entries(file: &Hdf5File, address: u64, dims: &[u32], axes: usize) -> Option<V
     let rank = Some(u32::try_from(axes).ok()?);
     let leaves = collect_btree_v1_leaves_storage(file.storage(), address, offsets, lengths, rank, dims, None).ok()?;
     let chunk = |(key, address): &(BTreeV1Key, u64)| match key {
-        BTreeV1Key::RawData { chunk_size, filter_mask: 0, offsets } => {
+        BTreeV1Key::RawData { chunk_size, filter_mask: 0, .. } => {
             let from = usize::try_from(*address).ok()?;
             let to = from.checked_add(usize::try_from(*chunk_size).ok()?)?;
-            Some(Entry { first: offsets.clone(), bytes: from..to })
+            Some(Entry { bytes: from..to })
         }
         _ => None,
     };
