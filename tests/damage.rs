@@ -1,6 +1,7 @@
 //! Whatever happens to the bytes: an error, the same document, or a report that it differs. Never a panic, never a hang.
 //!
-//! `BBRF_DAMAGED` sets the number of damaged copies; `make soak-damage` asks for 100,000. Figures: `docs/damage.md`.
+//! `BBRF_DAMAGED` sets the number of damaged copies, `BBRF_DAMAGED_FROM` the first (a failure names it); `make soak-damage`
+//! asks for 100,000. Figures: `docs/damage.md`.
 #![cfg(feature = "write")]
 #![allow(clippy::unwrap_used, reason = "a test")]
 
@@ -80,8 +81,10 @@ fn print(bases: &[Base], tally: &Tally) {
 fn damage_is_reported_or_without_effect() {
     let mut bases = ours();
     bases.extend(theirs());
-    let count = std::env::var("BBRF_DAMAGED").ok().and_then(|text| text.parse().ok()).unwrap_or(1000);
-    let tally = run(&bases, count);
+    let number = |name: &str| std::env::var(name).ok().and_then(|text| text.parse::<u64>().ok());
+    let from = number("BBRF_DAMAGED_FROM").unwrap_or(0);
+    let count = number("BBRF_DAMAGED").unwrap_or(1000);
+    let tally = run(&bases, from..from + count);
     print(&bases, &tally);
     assert!(tally.broken.is_empty(), "{:#?}", &tally.broken[..tally.broken.len().min(20)]);
     assert_eq!(tally.outcomes.values().sum::<u64>(), count);

@@ -1,6 +1,7 @@
 //! Many damaged copies on all cores: what became of each, how long the longest took, and who hung.
 
 use std::collections::BTreeMap;
+use std::ops::Range;
 use std::panic::catch_unwind;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -36,16 +37,16 @@ pub struct Tally {
     pub longest: Duration,
 }
 
-/// Damages copies 0 to `count` of the files in turn.
-pub fn run(bases: &[Base], count: u64) -> Tally {
-    let (next, tally) = (AtomicU64::new(0), Mutex::new(Tally::default()));
+/// Damages copies of the files in turn; the number of a copy says what is done to it.
+pub fn run(bases: &[Base], copies: Range<u64>) -> Tally {
+    let (next, tally) = (AtomicU64::new(copies.start), Mutex::new(Tally::default()));
     let workers = std::thread::available_parallelism().map_or(1, usize::from);
     let under_way: Vec<Mutex<Option<(u64, Instant)>>> = (0..workers).map(|_| Mutex::new(None)).collect();
     std::thread::scope(|scope| {
         let work = |mine: &Mutex<Option<(u64, Instant)>>| {
             loop {
                 let seed = next.fetch_add(1, Ordering::Relaxed);
-                if seed >= count {
+                if seed >= copies.end {
                     *mine.lock().unwrap() = None;
                     return;
                 }
