@@ -12,7 +12,7 @@ use bbrf::container::tree::{Array, Data, Dataset, Group};
 use bbrf::container::{
     ReadError, digest, document_tree, open_to_rewrite, open_verified, read_file, rewrite, sign_tree, tree_bytes,
 };
-use bbrf::validate::{Severity, validate_bytes};
+use bbrf::validate::{Severity, Status, validate_bytes};
 use predicates::prelude::PredicateBooleanExt;
 use predicates::str::contains;
 use serde_json::Value;
@@ -134,7 +134,10 @@ fn a_better_description_is_no_change() {
     value.attributes.insert("long_name".into(), Array::text("what the sheet sends back, over what a white plate does"));
     scan(&mut tree).dataset_mut("theta_i").unwrap().attributes.remove("long_name");
     let report = validate_bytes(&tree_bytes(&tree).unwrap());
-    assert_eq!(report.findings, [], "{:#?}", report.findings);
+    // It is said, because no digest would tell it from damage.
+    let found: Vec<_> = report.findings.iter().map(|finding| (finding.alias, finding.severity)).collect();
+    assert_eq!(found, [("BB0013", Severity::Info)], "{:#?}", report.findings);
+    assert_eq!(report.status(), Status::Valid);
 }
 
 #[test]

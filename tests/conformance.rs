@@ -6,7 +6,8 @@
 mod conformance;
 
 use bbrf::validate::{CLAUSES, RULES, Severity, Status, rule, validate_bytes};
-use conformance::{FAULTS, clean, clean_bytes, found, hemisphere};
+use conformance::score::{Answer, Kind, section, table};
+use conformance::{FAULTS, Fault, clean, clean_bytes, found, hemisphere};
 
 #[test]
 fn the_clean_file_is_left_alone() {
@@ -25,6 +26,21 @@ fn every_fault_is_found_by_its_rule() {
         })
         .collect();
     assert!(missed.is_empty(), "{missed:#?}");
+}
+
+/// The page says what the code does; `make conformance` writes it.
+#[test]
+fn the_published_table_is_in_step() {
+    let answer = |fault: &Fault| {
+        let report = validate_bytes(&fault.bytes());
+        let named = found(&fault.bytes()).into_iter().map(str::to_owned).collect();
+        (fault.file_name(), Answer::Ended { accepted: report.status() == Status::Valid, named })
+    };
+    let table = table(Kind::Validator, &FAULTS.iter().map(answer).collect());
+    let page = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/docs/conformance.md")).unwrap();
+    let published = section(&page, "validator").unwrap();
+    assert!(published.contains(&table), "docs/conformance.md is not what the code gives; run make conformance");
+    section(&page, "reader").unwrap();
 }
 
 #[test]

@@ -12,6 +12,7 @@
 mod checksum;
 mod chunk_table;
 mod decode;
+mod descriptions;
 mod differing;
 mod digest;
 mod encode;

@@ -5,6 +5,7 @@ use std::path::Path;
 
 use super::chunk_table::Chunks;
 use super::decode::decode;
+use super::descriptions;
 use super::differing::Differing;
 use super::digest::{Digest, Digests, of_lines};
 use super::encode::encode;
@@ -101,6 +102,8 @@ pub struct Inspection {
     pub(crate) canonical: Option<Group>,
     /// How its bytes differ from those of the writer; `None` where it was written by another program.
     pub differing: Option<Differing>,
+    /// Descriptions that differ from those that the document would be written with; no digest covers them.
+    pub described: Vec<String>,
     /// What differs from how the document would be written.
     pub mismatches: Vec<Mismatch>,
 }
@@ -131,6 +134,8 @@ fn look(bytes: FileBytes, limits: &Limits, depth: Depth) -> Result<Inspection, R
     let computed_digest = canonical.as_ref().map(|canonical| canonical.digests.document.clone());
     let mismatches =
         canonical.as_ref().map_or_else(Vec::new, |canonical| mismatches(&tree, canonical, stored_digest.as_deref()));
+    let described =
+        canonical.as_ref().map_or_else(Vec::new, |canonical| descriptions::differing(&tree, &canonical.tree));
     let foreign = Foreign::of(&tree);
     Ok(Inspection {
         bytes,
@@ -144,6 +149,7 @@ fn look(bytes: FileBytes, limits: &Limits, depth: Depth) -> Result<Inspection, R
         computed_digest,
         canonical: canonical.map(|canonical| canonical.tree),
         differing,
+        described,
         mismatches,
     })
 }

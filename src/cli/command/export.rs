@@ -1,14 +1,13 @@
 //! `bbrf export`: a file in another format.
 
-use std::io::Write;
 use std::ops::Range;
 use std::path::PathBuf;
 
-use miette::{IntoDiagnostic, WrapErr, miette};
+use miette::{IntoDiagnostic, miette};
 
 use super::import::geometry;
 use crate::cli::exit::{CommandResult, Outcome};
-use crate::cli::output::{print_bytes, print_message};
+use crate::cli::output::{print_bytes, print_message, write_output};
 use crate::cli::overwrite::refuse_overwriting;
 use crate::container::{self, Part};
 use crate::dataset::{Document, Measurement};
@@ -82,9 +81,7 @@ pub(crate) fn run(arguments: &Arguments) -> CommandResult {
         print_message(&format!("bbrf: not in the {}: {what}", arguments.to.noun()));
     }
     match &arguments.output {
-        Some(path) => container::replace::write_whole(path, |file| file.write_all(&bytes))
-            .into_diagnostic()
-            .wrap_err_with(|| format!("{} cannot be written", path.display()))?,
+        Some(path) => write_output(path, &bytes)?,
         None => print_bytes(&bytes)?,
     }
     Ok(Outcome::Done)

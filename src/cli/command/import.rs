@@ -162,7 +162,7 @@ fn files_read<'a>(document: &'a Document, inputs: &'a [PathBuf]) -> impl Iterato
 }
 
 fn save(document: &Document, path: &Path) -> Result<(), miette::Report> {
-    container::write_file(document, path).map_err(|error| miette!("{error}"))?;
+    container::write_file(document, path).map_err(|error| output::not_written(&error))?;
     Ok(())
 }
 
