@@ -4,7 +4,6 @@
 //! dimension scales, and with those two in hand little would be left for it to do.
 #![allow(unsafe_code)]
 
-use std::borrow::Cow;
 use std::ffi::{CString, c_char, c_void};
 use std::ptr;
 
@@ -13,7 +12,8 @@ use hdf5_sys::{h5, h5a, h5d, h5e, h5f, h5g, h5i::hid_t, h5p, h5s, h5t};
 
 use super::super::error::WriteError;
 use super::super::tree::{Array, Data};
-use super::chunks::{Source, chunks};
+use super::chunks::Chunk;
+use super::raw::Raw;
 
 #[link(name = "hdf5_hl", kind = "static")]
 unsafe extern "C" {
@@ -52,7 +52,8 @@ fn refused(operation: &'static str, path: &str) -> WriteError {
     WriteError::Library { operation, path: path.to_owned() }
 }
 
-/// Runs with the library to itself: libhdf5 keeps global state.
+/// Runs with the library to itself: libhdf5 keeps global state. Nothing inside may wait for other threads, which may be
+/// waiting for the library.
 pub(super) fn exclusively<T>(run: impl FnOnce() -> T) -> T {
     let _guard = hdf5_sys::LOCK.lock();
     // SAFETY: the lock is held; both calls only set up the library, and may be repeated.
@@ -158,54 +159,38 @@ impl Handle {
         }
     }
 
-    /// A new dataset in this file or group, with its values; its chunks come from the source.
+    /// A new dataset in this file or group, with its values: in one piece, or in the chunks that were made of them.
     pub(super) fn create_dataset(
         &self,
         name: &str,
         array: &Array,
         storage: &Storage,
-        source: Source<'_>,
+        chunks: &[Chunk<'_>],
     ) -> Result<Handle, WriteError> {
         let (path, c_name) = (format!("{}/{name}", self.path), c_name(name)?);
-        let element = Element::of(&array.data, &path)?;
+        let (raw, kind) = element(&array.data, &path)?;
         let space = space(&array.shape, &path)?;
         let list = creation_list(storage, &path)?;
         // SAFETY: every id is open; the buffer holds as many elements of the type as the space.
         unsafe {
-            let dataset = h5d::H5Dcreate2(
-                self.id,
-                c_name.as_ptr(),
-                element.kind.id,
-                space.id,
-                h5p::H5P_DEFAULT,
-                list.id,
-                h5p::H5P_DEFAULT,
-            );
+            let default = h5p::H5P_DEFAULT;
+            let dataset = h5d::H5Dcreate2(self.id, c_name.as_ptr(), kind.id, space.id, default, list.id, default);
             let dataset = handle(dataset, h5d::H5Dclose, "H5Dcreate", &path)?;
             if let Some(shape) = &storage.chunk {
-                dataset.write_chunks(&element, shape, storage.nan_fill, source)?;
+                dataset.write_chunks(chunks, shape.len())?;
                 return Ok(dataset);
             }
             let all = h5s::H5S_ALL;
-            let status =
-                h5d::H5Dwrite(dataset.id, element.kind.id, all, all, h5p::H5P_DEFAULT, element.bytes.as_ptr().cast());
+            let status = h5d::H5Dwrite(dataset.id, kind.id, all, all, default, raw.bytes.as_ptr().cast());
             done(status, "H5Dwrite", &path)?;
             Ok(dataset)
         }
     }
 
     /// Writes the values of this dataset as chunks that are encoded already.
-    fn write_chunks(
-        &self,
-        element: &Element<'_>,
-        shape: &[usize],
-        nan_fill: bool,
-        source: Source<'_>,
-    ) -> Result<(), WriteError> {
-        let fill = if nan_fill { f64::NAN.to_le_bytes().to_vec() } else { vec![0; element.width] };
-        let encoded = chunks(source, &self.path, &element.bytes, &fill, shape);
-        for chunk in encoded.ok_or_else(|| refused("other chunks than these", &self.path))? {
-            let mut offset = vec![0_u64; shape.len()];
+    fn write_chunks(&self, chunks: &[Chunk<'_>], axes: usize) -> Result<(), WriteError> {
+        for chunk in chunks {
+            let mut offset = vec![0_u64; axes];
             offset[0] = chunk.first_row;
             // SAFETY: `self` is an open chunked dataset, `offset` has an entry for each axis, the buffer its length.
             let status = unsafe {
@@ -226,14 +211,14 @@ impl Handle {
     /// A new attribute of this object.
     pub(super) fn write_attribute(&self, name: &str, array: &Array) -> Result<(), WriteError> {
         let (path, c_name) = (format!("{}@{name}", self.path), c_name(name)?);
-        let element = Element::of(&array.data, &path)?;
+        let (raw, kind) = element(&array.data, &path)?;
         let space = space(&array.shape, &path)?;
         // SAFETY: every id is open; the buffer holds as many elements of the type as the space.
         unsafe {
             let default = h5p::H5P_DEFAULT;
-            let id = h5a::H5Acreate2(self.id, c_name.as_ptr(), element.kind.id, space.id, default, default);
+            let id = h5a::H5Acreate2(self.id, c_name.as_ptr(), kind.id, space.id, default, default);
             let attribute = handle(id, h5a::H5Aclose, "H5Acreate", &path)?;
-            done(h5a::H5Awrite(attribute.id, element.kind.id, element.bytes.as_ptr().cast()), "H5Awrite", &path)
+            done(h5a::H5Awrite(attribute.id, kind.id, raw.bytes.as_ptr().cast()), "H5Awrite", &path)
         }
     }
 
@@ -303,52 +288,37 @@ fn creation_list(storage: &Storage, path: &str) -> Result<Handle, WriteError> {
     }
 }
 
-/// Values with their type, as the library takes them.
-struct Element<'a> {
-    kind: Handle,
-    bytes: Cow<'a, [u8]>,
-    width: usize,
-}
-
-impl<'a> Element<'a> {
-    fn of(data: &'a Data, path: &str) -> Result<Self, WriteError> {
-        if let Data::Text(texts) = data {
-            return Self::texts(texts, path);
-        }
-        let id = match data {
-            Data::U8(_) => *h5t::H5T_STD_U8LE,
-            Data::U16(_) => *h5t::H5T_STD_U16LE,
-            Data::U32(_) => *h5t::H5T_STD_U32LE,
-            Data::U64(_) => *h5t::H5T_STD_U64LE,
-            Data::I8(_) => *h5t::H5T_STD_I8LE,
-            Data::I16(_) => *h5t::H5T_STD_I16LE,
-            Data::I32(_) => *h5t::H5T_STD_I32LE,
-            Data::I64(_) => *h5t::H5T_STD_I64LE,
-            Data::F32(_) => *h5t::H5T_IEEE_F32LE,
-            Data::F64(_) => *h5t::H5T_IEEE_F64LE,
-            Data::Text(_) | Data::Other(_) => return Err(refused("a type without values", path)),
-        };
-        let bytes = data.bytes();
-        // SAFETY: a copy of an open type.
-        let kind = handle(unsafe { h5t::H5Tcopy(id) }, h5t::H5Tclose, "H5Tcopy", path)?;
-        let width = bytes.len() / data.len().max(1);
-        Ok(Self { kind, bytes, width })
-    }
-
-    /// Fixed-length UTF-8, padded with NUL to the longest text; at least one byte, because HDF5 has no empty type.
-    fn texts(texts: &[String], path: &str) -> Result<Self, WriteError> {
-        let size = texts.iter().map(String::len).max().unwrap_or(0).max(1);
-        let mut bytes = vec![0_u8; size * texts.len()];
-        for (slot, text) in bytes.chunks_mut(size).zip(texts) {
-            slot[..text.len()].copy_from_slice(text.as_bytes());
-        }
-        // SAFETY: the type is a private copy, open while it is changed.
-        unsafe {
-            let kind = handle(h5t::H5Tcopy(*h5t::H5T_C_S1), h5t::H5Tclose, "H5Tcopy", path)?;
-            done(h5t::H5Tset_size(kind.id, size), "H5Tset_size", path)?;
+/// The type of an element, of so many bytes where it is a text.
+fn element_type(data: &Data, width: usize, path: &str) -> Result<Handle, WriteError> {
+    let id = match data {
+        Data::U8(_) => *h5t::H5T_STD_U8LE,
+        Data::U16(_) => *h5t::H5T_STD_U16LE,
+        Data::U32(_) => *h5t::H5T_STD_U32LE,
+        Data::U64(_) => *h5t::H5T_STD_U64LE,
+        Data::I8(_) => *h5t::H5T_STD_I8LE,
+        Data::I16(_) => *h5t::H5T_STD_I16LE,
+        Data::I32(_) => *h5t::H5T_STD_I32LE,
+        Data::I64(_) => *h5t::H5T_STD_I64LE,
+        Data::F32(_) => *h5t::H5T_IEEE_F32LE,
+        Data::F64(_) => *h5t::H5T_IEEE_F64LE,
+        Data::Text(_) => *h5t::H5T_C_S1,
+        Data::Other(_) => return Err(refused("a type without values", path)),
+    };
+    // SAFETY: a copy of an open type, private and open while it is changed.
+    unsafe {
+        let kind = handle(h5t::H5Tcopy(id), h5t::H5Tclose, "H5Tcopy", path)?;
+        if matches!(data, Data::Text(_)) {
+            done(h5t::H5Tset_size(kind.id, width), "H5Tset_size", path)?;
             done(h5t::H5Tset_strpad(kind.id, h5t::H5T_str_t::H5T_STR_NULLPAD), "H5Tset_strpad", path)?;
             done(h5t::H5Tset_cset(kind.id, h5t::H5T_cset_t::H5T_CSET_UTF8), "H5Tset_cset", path)?;
-            Ok(Self { kind, bytes: bytes.into(), width: size })
         }
+        Ok(kind)
     }
+}
+
+/// The bytes of an array with the type of its elements.
+fn element<'a>(data: &'a Data, path: &str) -> Result<(Raw<'a>, Handle), WriteError> {
+    let raw = Raw::of(data).ok_or_else(|| refused("a type without values", path))?;
+    let kind = element_type(data, raw.width, path)?;
+    Ok((raw, kind))
 }

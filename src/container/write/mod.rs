@@ -5,16 +5,18 @@
 
 pub(super) mod chunks;
 mod library;
+mod raw;
 
 use std::borrow::Cow;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap};
 
 use super::digest::Digests;
 use super::error::WriteError;
 use super::layout::name;
 use super::tree::{Array, Attributes, Data, Dataset, Group};
-use chunks::Source;
+use chunks::{Chunk, Source};
 use library::{Handle, Storage, exclusively, memory_file};
+use raw::Raw;
 
 /// Bytes of a chunk before compression, about.
 const CHUNK_BYTES: usize = 1 << 20;
@@ -41,14 +43,45 @@ pub(super) fn to_bytes(root: &Group, plan: Plan<'_>) -> Result<Vec<u8>, WriteErr
 /// # Errors
 /// As [`to_bytes`].
 pub(super) fn with_image<R>(root: &Group, plan: Plan<'_>, look: impl FnOnce(&[u8]) -> R) -> Result<R, WriteError> {
+    // Over all cores, and therefore before the library is taken.
+    let mut chunks = HashMap::new();
+    prepare(root, "", plan.source, &mut chunks)?;
+    let made = Made { digests: plan.digests, chunks };
     exclusively(|| {
         let file = memory_file()?;
-        write_group(&file, root, "", plan)?;
+        write_group(&file, root, "", &made)?;
         file.image(look)
     })
 }
 
-fn write_group(target: &Handle, group: &Group, path: &str, plan: Plan<'_>) -> Result<(), WriteError> {
+/// What was made of a tree before it is written.
+struct Made<'a> {
+    digests: Option<&'a Digests>,
+    /// The chunks of every dataset that has any, by its path.
+    chunks: HashMap<String, Vec<Chunk<'a>>>,
+}
+
+/// Makes the chunks of all datasets.
+fn prepare<'a>(
+    group: &Group,
+    path: &str,
+    source: Source<'a>,
+    made: &mut HashMap<String, Vec<Chunk<'a>>>,
+) -> Result<(), WriteError> {
+    for (name, dataset) in &group.datasets {
+        let path = format!("{path}/{name}");
+        let Storage { chunk: Some(shape), nan_fill } = storage(group, name, dataset) else { continue };
+        let refused = |operation| WriteError::Library { operation, path: path.clone() };
+        let raw = Raw::of(&dataset.array.data).ok_or_else(|| refused("a type without values"))?;
+        let fill = if nan_fill { f64::NAN.to_le_bytes().to_vec() } else { vec![0; raw.width] };
+        let encoded = chunks::chunks(source, &path, &raw.bytes, &fill, &shape);
+        let encoded = encoded.ok_or_else(|| refused("other chunks than these"))?;
+        made.insert(path, encoded);
+    }
+    group.groups.iter().try_for_each(|(name, child)| prepare(child, &format!("{path}/{name}"), source, made))
+}
+
+fn write_group(target: &Handle, group: &Group, path: &str, plan: &Made<'_>) -> Result<(), WriteError> {
     write_attributes(target, &plan.signed(&group.attributes, if path.is_empty() { "/" } else { path }))?;
     // Ordered, because the library writes an object when it is closed: any order, but the same every time.
     let mut datasets = BTreeMap::new();
@@ -75,22 +108,27 @@ fn write_dataset(
     path: &str,
     name: &str,
     dataset: &Dataset,
-    plan: Plan<'_>,
+    plan: &Made<'_>,
 ) -> Result<Handle, WriteError> {
-    let nan_fill = matches!(dataset.array.data, Data::F64(_)) && !dataset.is_scale && !is_coordinate(group, name);
-    let storage = Storage { chunk: chunk(&dataset.array), nan_fill };
-    let written = target.create_dataset(name, &dataset.array, &storage, plan.source)?;
+    let storage = storage(group, name, dataset);
+    let chunks = plan.chunks.get(path).map_or(&[][..], Vec::as_slice);
+    let written = target.create_dataset(name, &dataset.array, &storage, chunks)?;
     if dataset.is_scale {
         written.make_scale(name)?;
     }
-    if nan_fill {
+    if storage.nan_fill {
         written.write_attribute("_FillValue", &Array::scalar(Data::F64(vec![f64::NAN].into())))?;
     }
     write_attributes(&written, &plan.signed(&dataset.attributes, path))?;
     Ok(written)
 }
 
-impl Plan<'_> {
+fn storage(group: &Group, name: &str, dataset: &Dataset) -> Storage {
+    let nan_fill = matches!(dataset.array.data, Data::F64(_)) && !dataset.is_scale && !is_coordinate(group, name);
+    Storage { chunk: chunk(&dataset.array), nan_fill }
+}
+
+impl Made<'_> {
     /// The attributes of an object with its digest.
     fn signed<'b>(&self, attributes: &'b Attributes, path: &str) -> Cow<'b, Attributes> {
         let Some(digests) = self.digests else { return Cow::Borrowed(attributes) };
