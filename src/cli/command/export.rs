@@ -6,9 +6,10 @@ use std::path::PathBuf;
 use miette::{IntoDiagnostic, WrapErr, miette};
 
 use crate::cli::exit::{CommandResult, Outcome};
+use crate::cli::opened::open;
 use crate::cli::output::{print_bytes, print_message};
 use crate::cli::overwrite::refuse_overwriting;
-use crate::container;
+use crate::container::{self, Opened};
 use crate::dataset::{Document, Measurement};
 use crate::export::{json, table_csv, universal_brdf};
 use crate::quantity::QuantityKind;
@@ -50,7 +51,7 @@ pub(crate) fn run(arguments: &Arguments) -> CommandResult {
     if let Some(output) = &arguments.output {
         refuse_overwriting(output, [arguments.file.clone()])?;
     }
-    let document = container::open_verified(&arguments.file).map_err(|error| miette!("{error}"))?;
+    let Opened { document, unknown, .. } = open(&arguments.file)?;
     let mut bytes = Vec::new();
     let lost = match arguments.to {
         Format::Csv => {
@@ -64,7 +65,7 @@ pub(crate) fn run(arguments: &Arguments) -> CommandResult {
         Format::Json => {
             let digest = container::digest(&document).map_err(|error| miette!("{error}"))?;
             json::write(&document, digest.as_str(), &mut bytes).into_diagnostic()?;
-            Vec::new()
+            unknown.into_iter().map(|path| format!("{path}, which the standard does not know")).collect()
         }
     };
     for what in lost {
