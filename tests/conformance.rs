@@ -110,3 +110,18 @@ fn a_finding_says_what_stands_there_and_what_belongs_there() {
         assert!(finding.expected.contains(expected), "{rule} {what}: {}", finding.expected);
     }
 }
+
+/// What cannot be read as a direction is placed where it stands.
+#[test]
+fn an_angle_below_its_range_is_found_in_its_own_column() {
+    for (column, angle) in [("theta_v", -10.0), ("phi_i", -10.0)] {
+        let mut tree = bbrf::container::document_tree(&clean()).unwrap();
+        conformance::numbers(tree.at_mut("measurement/scan").unwrap(), column)[3] = angle;
+        bbrf::container::sign_tree(&mut tree);
+        let report = bbrf::validate::validate_bytes(bbrf::container::tree_bytes(&tree).unwrap());
+        let places: Vec<_> = report.findings.iter().map(|finding| finding.place.to_string()).collect();
+        assert!(!places.is_empty());
+        let right = format!("/measurement/scan/{column}[3]");
+        assert!(places.iter().all(|place| *place == right), "{places:?}");
+    }
+}
