@@ -21,7 +21,7 @@ endif
 
 RELEASE := $(TARGET)/release/bbrf
 
-.PHONY: help demo test test-ecosystem lint bench soak clean build
+.PHONY: help demo test test-ecosystem lint bench soak soak-damage fuzz fuzz-check conformance clean build
 
 help: ## Say what there is to make.
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | awk -F ':.*## ' '{ printf "  make %-16s %s\n", $$1, $$2 }'
@@ -68,8 +68,39 @@ $(VENV)/bench-ready: $(VENV)/ready benches/requirements.txt
 bench: $(CMAKE_READY) $(VENV)/bench-ready ## Every figure in the README, measured here and now.
 	BBRF_PYTHON=$(VENV)/bin/python $(CARGO) bench --locked --bench fit --bench archive --bench validate
 
-soak: $(CMAKE_READY) $(VENV)/ready ## Long runs: ten thousand cases of every property, two thousand scans.
+soak: soak-damage fuzz-check ## Long runs: ten thousand cases of every property, two thousand scans, and the two below.
 	BBRF_PROPTEST_CASES=10000 BBRF_TRIALS=2000 BBRF_PYTHON=$(VENV)/bin/python $(CARGO) test --locked --release
+
+# Unoptimised, where arithmetic that overflows is a panic; in 4 GiB of memory, where what asks for more is refused.
+soak-damage: $(CMAKE_READY) $(VENV)/ready ## 100,000 damaged copies, 500 killed writers, full disks: the figures of docs/damage.md.
+	$(CARGO) test --locked --no-run --test damage --test kill --test full_disk
+	ulimit -v 4194304; BBRF_DAMAGED=100000 BBRF_KILLS=500 BBRF_PYTHON=$(VENV)/bin/python \
+		$(CARGO) test --locked --test damage --test kill --test full_disk -- --nocapture
+
+# As cargo-fuzz builds without a sanitizer, which needs no other toolchain: safe Rust has little to sanitize.
+FUZZ := RUSTFLAGS='--cfg fuzzing -Cpasses=sancov-module -Cllvm-args=-sanitizer-coverage-level=4 \
+	-Cllvm-args=-sanitizer-coverage-inline-8bit-counters -Cllvm-args=-sanitizer-coverage-pc-table \
+	-Cllvm-args=-sanitizer-coverage-trace-compares -Ccodegen-units=1' \
+	$(CARGO) run --locked --release --manifest-path fuzz/Cargo.toml --target-dir $(TARGET)/fuzz \
+	--target $(shell rustc -vV | sed -n 's/^host: //p') --bin validate --
+
+fuzz: $(TARGET)/kit/kit.csv ## Look for bytes that break the reader or the validator, until stopped (docs/damage.md).
+	mkdir -p $(TARGET)/corpus
+	$(FUZZ) $(TARGET)/corpus $(TARGET)/kit $(TARGET)/kit/encodings -rss_limit_mb=1024 -timeout=20 -max_len=200000
+
+fuzz-check: $(TARGET)/kit/kit.csv ## Build the fuzz target and run it once on every file of the kit.
+	$(CARGO) build --locked --manifest-path fuzz/Cargo.toml --target-dir $(TARGET)
+	$(TARGET)/debug/validate $(TARGET)/kit/*.bbrf $(TARGET)/kit/encodings/*.bbrf 2>&1 | tail -n 3
+
+$(TARGET)/kit/kit.csv: $(CMAKE_READY) $(VENV)/ready $(wildcard conformance/*)
+	$(CARGO) run --locked --quiet --example conformance_kit -- write $(TARGET)/kit $(VENV)/bin/python
+
+conformance: $(TARGET)/kit/kit.csv ## Score the validator and the Python reader with the kit: docs/conformance.md.
+	$(CARGO) build --locked --bin bbrf --example conformance_kit
+	$(TARGET)/debug/examples/conformance_kit score $(TARGET)/kit --page docs/conformance.md \
+		-- $(TARGET)/debug/bbrf validate --json {}
+	$(TARGET)/debug/examples/conformance_kit score-reader $(TARGET)/kit --page docs/conformance.md \
+		-- $(VENV)/bin/python examples/read_bbrf.py {}
 
 clean: ## Remove what was built.
 	$(CARGO) clean

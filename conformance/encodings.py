@@ -1,6 +1,6 @@
 """Copies of a file in every encoding that the standard allows, and in those that some program cannot read.
 
-    python encodings.py CLEAN.bbrf FOLDER
+    python encodings.py CLEAN.bbrf FOLDER [NAME ...]
 
 Prints one line for each copy: its name, `same` where the document's digest must be unchanged, and the rule that must
 name the encoding (`-` for none). Needs h5py alone.
@@ -152,7 +152,8 @@ ENCODINGS = {
 def main():
     clean, folder = Path(sys.argv[1]), Path(sys.argv[2])
     folder.mkdir(parents=True, exist_ok=True)
-    for name, (same, rule, change, options, edit) in ENCODINGS.items():
+    for name in sys.argv[3:] or ENCODINGS:
+        same, rule, change, options, edit = ENCODINGS[name]
         path = folder / f"{name}.bbrf"
         with h5py.File(clean, "r") as source, h5py.File(path, "w", **{"track_order": True, "libver": ("v108", "v110"), **options}) as target:
             copy_group(source, target, change)

@@ -196,6 +196,10 @@ pub const FAULTS: &[Fault] = &[
     }),
     t("structure.unknown", "an-attribute", |tree| set(group(tree, "measurement/scan"), "weather", "sunny")),
     t("structure.unknown", "a-group", |tree| tree.groups.push(("images".into(), Group::default()))),
+    t("structure.description", "cut-short", |tree| {
+        set_on(group(tree, "measurement/scan"), "phi_i", "long_name", Array::text("azimu"));
+    }),
+    t("structure.description", "another-version-of-cf", |tree| set(tree, "Conventions", "CF-1.1 BBRF-1.0")),
     b("structure.bytes", "index-of-chunks", |bytes| {
         // The address of the left neighbour of a chunk index, which only some readers follow.
         let at = position(bytes, b"TREE") + 9;

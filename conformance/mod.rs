@@ -12,6 +12,8 @@
 
 mod clean;
 mod faults;
+pub mod golden;
+pub mod score;
 
 use bbrf::container::tree::{Data, Group};
 use bbrf::container::{Limits, document_bytes, inspect, sign_tree, tree_bytes};

@@ -91,11 +91,11 @@ def measurement(group):
 def read(path):
     """The document of a file; refuses another major version and damaged content."""
     with h5py.File(path) as file:
-        version = text(file.attrs["bbrf_version"])
-        if version.split(".")[0] != "1":
+        version = file.attrs.get("bbrf_version")
+        if not isinstance(version, (str, bytes)) or text(version)[:2] != "1." or not text(version)[2:].isdigit():
             raise ValueError(f"version {version}; expected 1.x")
-        if version != "1.0":
-            print(f"version {version} is newer than this reader; what it adds is not read", file=sys.stderr)
+        if text(version) != "1.0":
+            print(f"version {text(version)} is newer than this reader; what it adds is not read", file=sys.stderr)
         digest = check_digests(file)
         groups = file["measurement"].items() if "measurement" in file else []
         groups = sorted(groups, key=lambda item: item[1].attrs["position"])

@@ -30,7 +30,29 @@ fn a_result_that_cannot_be_written_is_status_2_and_never_a_panic() {
     write_file(&documents::small(), &file).unwrap();
     let file = file.to_str().unwrap();
     let full = || std::fs::OpenOptions::new().write(true).open("/dev/full").unwrap();
-    let calls: [&[&str]; 7] = [
+    let geometry = folder.path().join("g.csv");
+    std::fs::write(&geometry, "theta_i_deg,phi_i_deg,theta_v_deg,phi_v_deg\n0,0,45,0\n").unwrap();
+    let imported = scan(folder.path().join("b/b.bbrf"));
+    let imported = imported.to_str().unwrap();
+    let manifest = concat!(env!("CARGO_MANIFEST_DIR"), "/testdata/simulated_scan/scan.csv");
+    let out = folder.path().join("out.bbrf");
+    let (page, out) = (folder.path().join("page.html"), out.to_str().unwrap());
+    let calls: &[&[&str]] = &[
+        &["--help"],
+        &["--version"],
+        &["validate", "--help"],
+        &["import", manifest, "-o", out],
+        &["fit", imported],
+        &["fit", "--json", imported],
+        &["eval", "--model", file, "--geometry", geometry.to_str().unwrap()],
+        &["report", file, "-o", page.to_str().unwrap()],
+        &["migrate", file],
+        &["validate", "--json", file],
+        &["validate", "--output", "sarif", file],
+        &["validate", "--output", "junit", file],
+        &["validate", "--output", "markdown", file],
+        &["rules", "--json"],
+        &["export", "--to", "csv", "--measurement", "scan", file],
         &["info", file],
         &["info", "--json", file],
         &["validate", file],

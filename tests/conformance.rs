@@ -6,11 +6,12 @@
 mod conformance;
 
 use bbrf::validate::{CLAUSES, RULES, Severity, Status, rule, validate_bytes};
-use conformance::{FAULTS, clean, clean_bytes, found, hemisphere};
+use conformance::score::{Answer, Kind, section, table};
+use conformance::{FAULTS, Fault, clean, clean_bytes, found, hemisphere};
 
 #[test]
 fn the_clean_file_is_left_alone() {
-    let report = validate_bytes(&clean_bytes());
+    let report = validate_bytes(clean_bytes());
     assert_eq!(report.findings, [], "{:#?}", report.findings);
     assert_eq!(report.status(), Status::Valid);
 }
@@ -27,10 +28,25 @@ fn every_fault_is_found_by_its_rule() {
     assert!(missed.is_empty(), "{missed:#?}");
 }
 
+/// The page says what the code does; `make conformance` writes it.
+#[test]
+fn the_published_table_is_in_step() {
+    let answer = |fault: &Fault| {
+        let report = validate_bytes(fault.bytes());
+        let named = found(&fault.bytes()).into_iter().map(str::to_owned).collect();
+        (fault.file_name(), Answer::Ended { accepted: report.status() == Status::Valid, named })
+    };
+    let table = table(Kind::Validator, &FAULTS.iter().map(answer).collect());
+    let page = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/docs/conformance.md")).unwrap();
+    let published = section(&page, "validator").unwrap();
+    assert!(published.contains(&table), "docs/conformance.md is not what the code gives; run make conformance");
+    section(&page, "reader").unwrap();
+}
+
 #[test]
 fn what_is_no_hdf5_is_unreadable() {
     for fault in FAULTS.iter().filter(|fault| fault.rule == "structure.hdf5") {
-        assert_eq!(validate_bytes(&fault.bytes()).status(), Status::Unreadable, "{}", fault.file_name());
+        assert_eq!(validate_bytes(fault.bytes()).status(), Status::Unreadable, "{}", fault.file_name());
     }
 }
 
@@ -62,7 +78,7 @@ fn each_rule_has_a_fault_a_clause_and_one_name() {
 #[test]
 fn a_finding_of_physics_has_its_z_score() {
     let fault = FAULTS.iter().find(|fault| fault.rule == "physics.negative").unwrap();
-    let report = validate_bytes(&fault.bytes());
+    let report = validate_bytes(fault.bytes());
     let finding = report.findings.iter().find(|finding| finding.rule.ends_with("physics.negative")).unwrap();
     assert!(finding.z.unwrap() > 10.0 && finding.severity == Severity::Warning, "{finding:#?}");
     assert_eq!(finding.place.index, [0, 20]);
@@ -104,7 +120,7 @@ fn a_finding_says_what_stands_there_and_what_belongs_there() {
         ("structure.complete", "no-stated-mask", "nothing", "uint8"),
     ] {
         let fault = FAULTS.iter().find(|fault| fault.rule == rule && fault.what == what).unwrap();
-        let report = validate_bytes(&fault.bytes());
+        let report = validate_bytes(fault.bytes());
         let finding = report.findings.iter().find(|finding| finding.rule.ends_with(rule)).unwrap();
         assert_eq!(finding.found, found, "{rule} {what}");
         assert!(finding.expected.contains(expected), "{rule} {what}: {}", finding.expected);

@@ -25,7 +25,10 @@ fn document(grid: &[Geometry], values: Vec<f64>, sigma: Option<Vec<f64>>, refere
     let emission = EmissionAxis::Band { band: None };
     let standard = sigma.map(|sigma| Array2::from_shape_vec(shape, sigma).unwrap());
     let measurement = Measurement {
-        uncertainty: Uncertainty { standard, ..Uncertainty::default() },
+        uncertainty: Uncertainty {
+            standard: standard.map(|standard| standard.into_shared()),
+            ..Uncertainty::default()
+        },
         ..Measurement::new(Id::new("scan").unwrap(), Role::Sample, quantity, emission, acquisitions, values)
     };
     Document { measurements: vec![measurement], ..Document::default() }

@@ -339,13 +339,13 @@ fn a_repair_makes_an_unusual_encoding_portable() {
     let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("conformance/encodings.py");
     let mut command = std::process::Command::new(python);
     assert!(command.arg(script).arg(folder.at("clean.bbrf")).arg(folder.0.path()).output().unwrap().status.success());
-    let digest = validate_bytes(&clean_bytes()).digest;
+    let digest = validate_bytes(clean_bytes()).digest;
     for name in ["big-endian", "variable-strings", "no-creation-order", "user-block", "no-scales", "fill-value"] {
         let file = format!("{name}.bbrf");
         assert_eq!(folder.status(&["--deny", "portability", &file]), 1, "{name}");
         let said = folder.reported(&["--fix", "--deny", "portability", &file]);
         assert!(said.contains("mended portability."), "{name}: {said}");
         assert_eq!(folder.status(&["--deny", "portability", &file]), 0, "{name}");
-        assert_eq!(validate_bytes(&fs::read(folder.at(&file)).unwrap()).digest, digest, "{name}");
+        assert_eq!(validate_bytes(fs::read(folder.at(&file)).unwrap()).digest, digest, "{name}");
     }
 }

@@ -48,7 +48,13 @@ pub fn schemas() -> Vec<(&'static str, schemars::Schema)> {
 /// Runs the command with the arguments of the process.
 #[must_use]
 pub fn run() -> ExitCode {
-    exit::code(match Arguments::parse().command {
+    let arguments = match Arguments::try_parse() {
+        Ok(arguments) => arguments,
+        // A wrong call goes to stderr with status 2; help and version are results like others.
+        Err(error) if error.use_stderr() => error.exit(),
+        Err(error) => return exit::code(output::arrived(error.print()).map(|()| exit::Outcome::Done)),
+    };
+    exit::code(match arguments.command {
         Command::Import(arguments) => command::import::run(&arguments),
         Command::Fit(arguments) => command::fit::run(&arguments),
         Command::Eval(arguments) => command::eval::run(&arguments),

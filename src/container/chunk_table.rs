@@ -25,7 +25,7 @@ pub(super) struct Placed {
 /// A chunk in a file.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Entry {
-    /// First element along every axis.
+    /// First element along every axis, as the index says.
     pub(super) first: Vec<u64>,
     /// Where its bytes are.
     pub(super) bytes: Range<usize>,

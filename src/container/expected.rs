@@ -1,8 +1,6 @@
 //! What stands at a path, in words, so that a message can set what is there against what should be.
 
-use super::encode::encode;
 use super::tree::{Array, Data, Group, Object};
-use crate::dataset::Document;
 
 /// So many elements are written out.
 const WRITTEN_OUT: usize = 16;
@@ -11,24 +9,21 @@ const WRITTEN_OUT: usize = 16;
 #[must_use]
 pub(crate) fn in_words(tree: &Group, path: &str) -> Option<String> {
     let (object_path, attribute) = path.split_once('@').map_or((path, None), |(object, name)| (object, Some(name)));
-    let wanted = if object_path == "/" { "" } else { object_path };
-    let mut words = None;
-    tree.visit("", &mut |found, object| {
-        if found.trim_end_matches('/') == wanted {
-            words = match (attribute, &object) {
-                (Some(name), _) => object.attributes().get(name).map(array),
-                (None, Object::Dataset(dataset)) => Some(array(&dataset.array)),
-                (None, Object::Group(_)) => Some("a group".to_owned()),
-            };
-        }
-    });
-    words
-}
-
-/// The document as it would be written, without digests.
-#[must_use]
-pub(crate) fn as_written(document: &Document) -> Option<Group> {
-    encode(document).ok()
+    let mut names: Vec<&str> = object_path.split('/').filter(|name| !name.is_empty()).collect();
+    let last = names.pop();
+    let parent = names.into_iter().try_fold(tree, Group::group)?;
+    let object = match last {
+        None => Object::Group(parent),
+        Some(name) => match (parent.dataset(name), parent.group(name)) {
+            (Some(dataset), _) => Object::Dataset(dataset),
+            (None, group) => Object::Group(group?),
+        },
+    };
+    match (attribute, object) {
+        (Some(name), _) => object.attributes().get(name).map(array),
+        (None, Object::Dataset(dataset)) => Some(array(&dataset.array)),
+        (None, Object::Group(_)) => Some("a group".to_owned()),
+    }
 }
 
 fn array(array: &Array) -> String {

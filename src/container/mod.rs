@@ -12,6 +12,7 @@
 mod checksum;
 mod chunk_table;
 mod decode;
+mod descriptions;
 mod differing;
 mod digest;
 mod encode;
@@ -37,11 +38,12 @@ pub use differing::Differing;
 pub use digest::{Digest, digest, measurement_digest};
 pub use encoding::{Construct, Encoded};
 pub use error::{EncodeError, ReadError, WriteError};
-pub(crate) use expected::{as_written, in_words};
+pub(crate) use expected::in_words;
 pub use file_bytes::FileBytes;
 pub use foreign::Foreign;
 pub use limits::Limits;
 pub use open::{Inspection, Mismatch, Opened, inspect, open, open_to_rewrite, open_verified, read_bytes, read_file};
+pub use read::part::{Part, read_part};
 
 #[cfg(feature = "write")]
 pub use save::{

@@ -5,6 +5,7 @@ use std::path::Path;
 
 use super::chunk_table::Chunks;
 use super::decode::decode;
+use super::descriptions;
 use super::differing::Differing;
 use super::digest::{Digest, Digests, of_lines};
 use super::encode::encode;
@@ -106,8 +107,12 @@ pub struct Inspection {
     pub chunks: Chunks,
     /// Encodings that the standard does not use and some reader cannot read.
     pub unusual: Vec<Encoded>,
+    /// The tree that the document would be written as, without digests.
+    pub(crate) canonical: Option<Group>,
     /// How its bytes differ from those of the writer; `None` where it was written by another program.
     pub differing: Option<Differing>,
+    /// Descriptions that differ from those that the document would be written with; no digest covers them.
+    pub described: Vec<String>,
     /// What differs from how the document would be written.
     pub mismatches: Vec<Mismatch>,
 }
@@ -138,6 +143,8 @@ fn look(bytes: FileBytes, limits: &Limits, depth: Depth) -> Result<Inspection, R
     let computed_digest = canonical.as_ref().map(|canonical| canonical.digests.document.clone());
     let mismatches =
         canonical.as_ref().map_or_else(Vec::new, |canonical| mismatches(&tree, canonical, stored_digest.as_deref()));
+    let described =
+        canonical.as_ref().map_or_else(Vec::new, |canonical| descriptions::differing(&tree, &canonical.tree));
     let foreign = Foreign::of(&tree);
     Ok(Inspection {
         bytes,
@@ -149,7 +156,9 @@ fn look(bytes: FileBytes, limits: &Limits, depth: Depth) -> Result<Inspection, R
         document,
         stored_digest,
         computed_digest,
+        canonical: canonical.map(|canonical| canonical.tree),
         differing,
+        described,
         mismatches,
     })
 }

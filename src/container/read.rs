@@ -3,6 +3,7 @@
 //! Anything wrong ends the read: half a tree is no tree.
 
 mod chunks;
+pub(super) mod part;
 
 use std::collections::HashSet;
 use std::sync::Arc;
@@ -35,30 +36,24 @@ pub(super) struct Read {
 pub(super) fn from_bytes(bytes: &FileBytes, limits: &Limits) -> Result<Read, ReadError> {
     let size = bytes.len() as u64;
     within("bytes", size, limits.file_bytes, "/")?;
-    let decoded = limits.decoded_bytes(size);
-    let most = usize::try_from(decoded).unwrap_or(usize::MAX);
-    let options = OpenOptions::default()
+    let file =
+        Hdf5File::from_owner(bytes.clone(), options(size, limits)).map_err(|error| ReadError::encoding("/", error))?;
+    let root = file.root_group().map_err(|error| ReadError::encoding("/", error))?;
+    let mut walk = Walk::new(&file, bytes, limits, size);
+    encoding::of_file(&file, &mut walk.unusual);
+    let tree = walk.group(&root, "", 0)?;
+    Ok(Read { tree, unusual: walk.unusual, chunks: walk.chunks })
+}
+
+/// How a file of that size is opened.
+fn options(size: u64, limits: &Limits) -> OpenOptions {
+    let most = usize::try_from(limits.decoded_bytes(size)).unwrap_or(usize::MAX);
+    OpenOptions::default()
         .with_chunk_cache_bytes(0)
         .with_external_link_resolver(Arc::new(links::RefuseExternal))
         .with_max_chunk_bytes(most)
         .with_max_read_bytes(most)
-        .with_max_object_header_bytes(bytes.len());
-    let file = Hdf5File::from_owner(bytes.clone(), options).map_err(|error| ReadError::encoding("/", error))?;
-    let root = file.root_group().map_err(|error| ReadError::encoding("/", error))?;
-    let mut unusual = Vec::new();
-    encoding::of_file(&file, &mut unusual);
-    let mut walk = Walk {
-        file: &file,
-        bytes,
-        limits,
-        decoded_left: decoded,
-        objects: 0,
-        decoded_limit: decoded,
-        unusual,
-        chunks: Chunks::default(),
-    };
-    let tree = walk.group(&root, "", 0)?;
-    Ok(Read { tree, unusual: walk.unusual, chunks: walk.chunks })
+        .with_max_object_header_bytes(usize::try_from(size).unwrap_or(usize::MAX))
 }
 
 fn within(what: &'static str, found: u64, limit: u64, path: &str) -> Result<(), ReadError> {
@@ -79,7 +74,22 @@ struct Walk<'a> {
     objects: u64,
 }
 
-impl Walk<'_> {
+impl<'a> Walk<'a> {
+    /// A walk over a file of that size; `bytes` are the whole file, or nothing where it is not held.
+    fn new(file: &'a Hdf5File, bytes: &'a [u8], limits: &'a Limits, size: u64) -> Self {
+        let decoded = limits.decoded_bytes(size);
+        Self {
+            file,
+            bytes,
+            limits,
+            decoded_left: decoded,
+            objects: 0,
+            decoded_limit: decoded,
+            unusual: Vec::new(),
+            chunks: Chunks::default(),
+        }
+    }
+
     fn group(&mut self, group: &hdf5_reader::group::Group, path: &str, depth: usize) -> Result<Group, ReadError> {
         let shown = if path.is_empty() { "/" } else { path };
         let failed = |error: Error| ReadError::encoding(shown, error);

@@ -99,7 +99,8 @@ pub fn convert(measurement: &Measurement, target: Target) -> Result<Converted, N
         }
     }
     let mut uncertainty = measurement.uncertainty.clone();
-    uncertainty.standard = measurement.uncertainty.standard.as_ref().map(|standard| (standard * &factors).into_shared());
+    uncertainty.standard =
+        measurement.uncertainty.standard.as_ref().map(|standard| (standard * &factors).into_shared());
     let measurement = Measurement {
         id: Id::from_title(&format!("{}-{}", measurement.id, suffix(target))),
         quantity,

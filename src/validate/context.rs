@@ -5,7 +5,7 @@ use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
 use super::census::Census;
 use crate::container::layout::{self, name};
 use crate::container::tree::{Array, Data, Dataset, Group, Object};
-use crate::container::{Inspection, as_written, in_words};
+use crate::container::{Inspection, in_words};
 use crate::dataset::{Document, Measurement};
 
 /// A file under inspection.
@@ -46,7 +46,7 @@ impl<'a> Context<'a> {
     /// What stands at the path of an object or an attribute, and what the rest of the file calls for there.
     #[must_use]
     pub fn found_and_expected(&self, path: &str) -> (String, String) {
-        let expected = self.document().and_then(as_written).and_then(|tree| in_words(&tree, path));
+        let expected = self.inspection.canonical.as_ref().and_then(|tree| in_words(tree, path));
         let found = in_words(&self.inspection.tree, path);
         let expected = expected.unwrap_or_else(|| "what the rest of the file calls for".to_owned());
         (found.unwrap_or_else(|| "nothing".to_owned()), expected)

@@ -134,6 +134,9 @@ rules! {
     "BB0012" "structure.extension-domain" Warning provenance::extension_domain,
         "Names of laboratories collide; names of their domains do not.",
         "`/extension/goniometer`", "Name the group by the reverse domain name of whoever defines it.";
+    "BB0013" "structure.description" Info structure::description,
+        "No digest covers a description: another sentence may be a better one, or damage.", "`long_name` = azimu",
+        "Compare it with a copy of the file.";
 
     "BB0101" "digest.object" Error digest::object,
         "A digest that disagrees means damage or a change by hand.", "one changed bit in `value`",

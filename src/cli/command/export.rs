@@ -1,18 +1,19 @@
 //! `bbrf export`: a file in another format.
 
-use std::io::Write;
+use std::ops::Range;
 use std::path::PathBuf;
 
-use miette::{IntoDiagnostic, WrapErr, miette};
+use miette::{IntoDiagnostic, miette};
 
+use super::import::geometry;
 use crate::cli::exit::{CommandResult, Outcome};
 use crate::cli::opened::open;
-use crate::cli::output::{print_bytes, print_message};
+use crate::cli::output::{print_bytes, print_message, write_output};
 use crate::cli::overwrite::refuse_overwriting;
-use crate::container::{self, Opened};
+use crate::container::{self, Part};
 use crate::dataset::{Document, Measurement};
 use crate::export::{json, table_csv, universal_brdf};
-use crate::quantity::QuantityKind;
+use crate::quantity::{Geometry, QuantityKind};
 
 /// Write a file in another format.
 #[derive(Debug, clap::Args)]
@@ -25,6 +26,12 @@ pub(crate) struct Arguments {
     /// The measurement, by id [default: the only one, or the only one that is a factor]
     #[arg(long, value_name = "ID")]
     measurement: Option<String>,
+    /// Only the rows of this geometry: theta_i,phi_i,theta_v,phi_v in degrees; the rest of the file is not read
+    #[arg(long, value_parser = geometry, allow_hyphen_values = true, requires = "measurement")]
+    geometry: Option<Geometry>,
+    /// Only these rows, from 0, the last one left out: 10..20; the rest of the file is not read
+    #[arg(long, value_name = "FROM..TO", value_parser = rows, requires = "measurement", conflicts_with = "geometry")]
+    rows: Option<Range<usize>>,
     /// Write here instead of to stdout
     #[arg(short, long)]
     output: Option<PathBuf>,
@@ -51,7 +58,13 @@ pub(crate) fn run(arguments: &Arguments) -> CommandResult {
     if let Some(output) = &arguments.output {
         refuse_overwriting(output, [arguments.file.clone()])?;
     }
-    let Opened { document, unknown, .. } = open(&arguments.file)?;
+    let (document, unknown) = match chosen_rows(arguments)? {
+        Some(part) => (part, Vec::new()),
+        None => {
+            let opened = open(&arguments.file)?;
+            (opened.document, opened.unknown)
+        }
+    };
     let mut bytes = Vec::new();
     let lost = match arguments.to {
         Format::Csv => {
@@ -72,12 +85,36 @@ pub(crate) fn run(arguments: &Arguments) -> CommandResult {
         print_message(&format!("bbrf: not in the {}: {what}", arguments.to.noun()));
     }
     match &arguments.output {
-        Some(path) => container::replace::write_whole(path, |file| file.write_all(&bytes))
-            .into_diagnostic()
-            .wrap_err_with(|| format!("{} cannot be written", path.display()))?,
+        Some(path) => write_output(path, &bytes)?,
         None => print_bytes(&bytes)?,
     }
     Ok(Outcome::Done)
+}
+
+/// A document of nothing but the rows that are asked for; `None` where all are.
+fn chosen_rows(arguments: &Arguments) -> Result<Option<Document>, miette::Report> {
+    let Some(id) = arguments.measurement.as_deref() else { return Ok(None) };
+    let part = match (arguments.geometry, &arguments.rows) {
+        (Some(geometry), _) => container::read_part(&arguments.file, id, |_, row| row.geometry == Some(geometry)),
+        (None, Some(rows)) => container::read_part(&arguments.file, id, |row, _| rows.contains(&row)),
+        (None, None) => return Ok(None),
+    };
+    let Part { measurement, bytes_read, file_bytes } = part.map_err(|error| miette!("{error}"))?;
+    if measurement.acquisitions.is_empty() {
+        return Err(miette!(help = "see `bbrf info`", "measurement `{id}` has no such row"));
+    }
+    print_message(&format!(
+        "bbrf: {bytes_read} of {file_bytes} bytes read: the digests, which are of the whole file, were not checked; \
+         `bbrf validate` checks them"
+    ));
+    Ok(Some(Document { measurements: vec![measurement], ..Document::default() }))
+}
+
+fn rows(text: &str) -> Result<Range<usize>, String> {
+    let ends = text.split_once("..").and_then(|(from, to)| Some(from.parse().ok()?..to.parse().ok()?));
+    ends.filter(|range: &Range<usize>| !range.is_empty()).ok_or_else(|| {
+        format!("`{text}` is no range of rows; expected the first row and the one after the last, as in 10..20")
+    })
 }
 
 pub(super) fn chosen<'a>(document: &'a Document, id: Option<&str>) -> Result<&'a Measurement, miette::Report> {

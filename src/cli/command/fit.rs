@@ -13,7 +13,7 @@ use serde::Serialize;
 
 use crate::cli::exit::{CommandResult, Outcome};
 use crate::cli::opened::open_to_rewrite;
-use crate::cli::output::{print_json, print_text, report_error};
+use crate::cli::output::{not_written, print_json, print_text, report_error};
 use crate::cli::progress;
 use crate::container::{self, Opened};
 use crate::dataset::{Document, FittedParameter, Measurement, Model, Reduction, Role, Step};
@@ -215,7 +215,7 @@ fn fit_file(arguments: &Arguments, file: &Path, output: Option<&Path>) -> Result
                 file.display()
             ));
         }
-        container::write_file_keeping(&document, &foreign, output).map_err(|error| miette!("{error}"))?;
+        container::write_file_keeping(&document, &foreign, output).map_err(|error| not_written(&error))?;
     }
     Ok(result)
 }

@@ -162,7 +162,7 @@ fn files_read<'a>(document: &'a Document, inputs: &'a [PathBuf]) -> impl Iterato
 }
 
 fn save(document: &Document, path: &Path) -> Result<(), miette::Report> {
-    container::write_file(document, path).map_err(|error| miette!("{error}"))?;
+    container::write_file(document, path).map_err(|error| output::not_written(&error))?;
     Ok(())
 }
 
@@ -206,7 +206,7 @@ fn reference_light(text: &str) -> Result<ReferenceLight, String> {
     text.parse().map_err(|error: crate::quantity::UnknownName| error.to_string())
 }
 
-fn geometry(text: &str) -> Result<Geometry, String> {
+pub(super) fn geometry(text: &str) -> Result<Geometry, String> {
     let angles: Vec<f64> = text.split(',').map_while(|angle| angle.trim().parse().ok()).collect();
     let &[theta_i, phi_i, theta_v, phi_v] = angles.as_slice() else {
         return Err("expected four angles in degrees: theta_i,phi_i,theta_v,phi_v".to_owned());

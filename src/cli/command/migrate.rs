@@ -8,7 +8,7 @@ use serde::Serialize;
 
 use crate::cli::exit::{CommandResult, Outcome};
 use crate::cli::opened::say_later;
-use crate::cli::output::{print_json, print_message, print_text};
+use crate::cli::output::{not_written, print_json, print_message, print_text};
 use crate::cli::overwrite::refuse_overwriting;
 use crate::container::layout::{self, MINOR, VERSION};
 use crate::container::{self, FileBytes, Limits, Opened, ReadError, inspect};
@@ -99,7 +99,7 @@ pub(crate) fn run(arguments: &Arguments) -> CommandResult {
                 text: "(content that the standard does not know)".to_owned(),
             }));
         }
-        container::write_file_keeping(&document, &foreign, output).map_err(|error| miette!("{error}"))?;
+        container::write_file_keeping(&document, &foreign, output).map_err(|error| not_written(&error))?;
         result.output = Some(output.display().to_string());
     }
     print(arguments, &result)?;

@@ -1,6 +1,5 @@
 //! `bbrf report`: one HTML page about a file, and its figures as PNG and SVG.
 
-use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use miette::miette;
@@ -9,9 +8,8 @@ use serde::Serialize;
 
 use crate::cli::exit::{CommandResult, Outcome};
 use crate::cli::opened::open;
-use crate::cli::output::{print_json, print_message, print_text};
+use crate::cli::output::{print_json, print_message, print_text, write_output};
 use crate::cli::overwrite::refuse_overwriting;
-use crate::container;
 use crate::report::{Figure, Pictures, page};
 
 /// Draw a file: one HTML page, and its figures as PNG and SVG.
@@ -53,7 +51,7 @@ pub(crate) fn run(arguments: &Arguments) -> CommandResult {
         result.figures = write_figures(folder, &arguments.file, &pictures)?;
     }
     if let Some(path) = page_path {
-        write_whole(&path, page(&document, &pictures).as_bytes())?;
+        write_output(&path, page(&document, &pictures).as_bytes())?;
         result.page = Some(path.display().to_string());
     }
     print_result(arguments, &result)?;
@@ -77,7 +75,7 @@ fn write_figures(folder: &Path, input: &Path, pictures: &Pictures) -> Result<Vec
         for (extension, bytes) in forms(figure)? {
             let path = folder.join(format!("{}.{extension}", figure.name()));
             refuse_overwriting(&path, [input.to_owned()])?;
-            write_whole(&path, &bytes)?;
+            write_output(&path, &bytes)?;
             written.push(path.display().to_string());
         }
     }
@@ -88,12 +86,6 @@ fn forms(figure: &Figure) -> Result<[(&'static str, Vec<u8>); 2], miette::Report
     let png = figure.to_png().map_err(|error| miette!("{error}"))?;
     let svg = figure.to_svg_outlined().map_err(|error| miette!("{error}"))?;
     Ok([("png", png), ("svg", svg.into_bytes())])
-}
-
-/// Writes a file whole or not at all.
-fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), miette::Report> {
-    container::replace::write_whole(path, |file| file.write_all(bytes))
-        .map_err(|error| miette!("{}: cannot be written: {error}", path.display()))
 }
 
 fn print_result(arguments: &Arguments, result: &ReportResult) -> Result<(), miette::Report> {

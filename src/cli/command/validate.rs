@@ -1,14 +1,12 @@
 //! `bbrf validate`: check files against the rules.
 
-use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use miette::miette;
 
 use crate::cli::exit::{CommandResult, Outcome};
-use crate::cli::output::{print_message, print_text};
+use crate::cli::output::{print_message, print_text, write_output};
 use crate::cli::progress::bar;
-use crate::container::replace::write_whole;
 use crate::container::{FileBytes, Limits};
 use crate::validate::{
     Baseline, Checked, Grading, PROFILES, Status, UnknownRule, form, profile, repair, validate_files,
@@ -121,7 +119,7 @@ fn grading(arguments: &Arguments) -> Result<Grading, miette::Report> {
 fn write_baseline(path: &Path, files: &[Checked]) -> Result<(), miette::Report> {
     let baseline = Baseline::of(files);
     let text = serde_json::to_string_pretty(&baseline).map_err(|error| miette!("the baseline: {error}"))?;
-    write_whole(path, |file| writeln!(file, "{text}")).map_err(|error| miette!("{}: {error}", path.display()))
+    write_output(path, format!("{text}\n").as_bytes())
 }
 
 /// Repairs a file in place, and says what was done.
@@ -135,7 +133,7 @@ fn fix(path: &Path, dry_run: bool) -> Result<String, miette::Report> {
         Ok(None) => Ok(format!("{name}: nothing that writing it again would mend")),
         Ok(Some(mended)) if dry_run => Ok(format!("{name}: would mend {}", mended.repaired.join(", "))),
         Ok(Some(mended)) => {
-            write_whole(path, |file| file.write_all(&mended.bytes)).map_err(|error| miette!("{name}: {error}"))?;
+            write_output(path, &mended.bytes)?;
             Ok(format!("{name}: mended {}", mended.repaired.join(", ")))
         }
         Err(error) => Ok(format!("{name}: {error}")),

@@ -99,7 +99,7 @@ impl<'a, 'b> Table<'a, 'b> {
     }
 }
 
-fn rows(at: &At<'_>) -> Result<Vec<Acquisition>, ReadError> {
+pub(super) fn rows(at: &At<'_>) -> Result<Vec<Acquisition>, ReadError> {
     let table = Table::new(at, name::STATED)?;
     let angles = [name::THETA_I, name::PHI_I, name::THETA_V, name::PHI_V].map(|name| table.numbers(name));
     let [theta_i, phi_i, theta_v, phi_v] = angles;

@@ -14,12 +14,12 @@ use serde::de::DeserializeOwned;
 use super::error::ReadError;
 use super::layout::{self, name};
 use super::tree::{Array, Data, Dataset, Group, Values};
-use crate::dataset::{Document, Id};
+use crate::dataset::{Acquisition, Document, Id, Measurement};
 
 /// The document of a tree.
 pub(super) fn decode(root: &Group) -> Result<Document, ReadError> {
     let root = At { path: String::new(), group: root };
-    version(&root)?;
+    version_at(&root)?;
     Ok(Document {
         title: root.optional_text(name::TITLE)?,
         license: root.optional_text(name::LICENSE)?,
@@ -36,7 +36,22 @@ pub(super) fn decode(root: &Group) -> Result<Document, ReadError> {
     })
 }
 
-fn version(root: &At<'_>) -> Result<(), ReadError> {
+/// Refuses a root group of another major version.
+pub(super) fn version(root: &Group) -> Result<(), ReadError> {
+    version_at(&At { path: String::new(), group: root })
+}
+
+/// The rows of a measurement, from its group at that path.
+pub(super) fn decode_rows(path: &str, group: &Group) -> Result<Vec<Acquisition>, ReadError> {
+    measurement::rows(&At { path: path.to_owned(), group })
+}
+
+/// A measurement, from its group at that path. Its parts are not checked against each other.
+pub(super) fn measurement(id: Id, path: &str, group: &Group) -> Result<Measurement, ReadError> {
+    measurement::measurement(id, &At { path: path.to_owned(), group })
+}
+
+fn version_at(root: &At<'_>) -> Result<(), ReadError> {
     let place = root.attribute_path(name::BBRF_VERSION);
     let stated = root
         .optional_text(name::BBRF_VERSION)?

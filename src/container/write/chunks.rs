@@ -49,10 +49,13 @@ pub(super) fn chunks<'a>(
         let placed = placed.get(path).filter(|placed| placed.shape == shape)?;
         let count = bytes.len().div_ceil(chunk_bytes);
         if let Some(entries) = placed.entries.as_ref().filter(|entries| entries.len() == count) {
-            let taken = entries.iter().map(|entry| {
-                Some(Chunk { first_row: *entry.first.first()?, bytes: file.get(entry.bytes.clone())?.into() })
+            // At the rows where they belong: the rows that the index gives may be what is damaged.
+            let taken = entries.iter().enumerate().map(|(k, entry)| {
+                Some(Chunk { first_row: (k * shape[0]) as u64, bytes: file.get(entry.bytes.clone())?.into() })
             });
-            return taken.collect();
+            if let Some(taken) = taken.collect() {
+                return Some(taken);
+            }
         }
     }
     let values: Vec<&[u8]> = bytes.chunks(chunk_bytes).collect();

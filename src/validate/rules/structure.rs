@@ -112,6 +112,12 @@ pub(in super::super) fn attributes(context: &Context<'_>, found: &mut Finder) {
     }
 }
 
+pub(in super::super) fn description(context: &Context<'_>, found: &mut Finder) {
+    for path in &context.inspection.described {
+        found.add(Place::path(path), "another description", "that of the standard's writer");
+    }
+}
+
 pub(in super::super) fn unknown(context: &Context<'_>, found: &mut Finder) {
     for path in &context.inspection.unknown {
         found.add(Place::path(path), "content that the standard does not know", "content of the standard");
