@@ -113,6 +113,7 @@ pub const FAULTS: &[Fault] = &[
     t("structure.major-version", "zero", |tree| set(tree, "bbrf_version", "0.9")),
     t("structure.minor-version", "later", |tree| set(tree, "bbrf_version", "1.7")),
     t("structure.conventions", "cf-only", |tree| set(tree, "Conventions", "CF-1.11")),
+    t("structure.conventions", "inside-a-word", |tree| set(tree, "Conventions", "CF-1.11 NOBBRF")),
     t("structure.conventions", "absent", |tree| drop(tree.attributes.remove("Conventions"))),
     t("structure.complete", "no-flags", |tree| without(group(tree, "measurement/scan"), "value_flag")),
     t("structure.complete", "no-values", |tree| without(group(tree, "measurement/scan"), "value")),
@@ -472,6 +473,8 @@ pub const FAULTS: &[Fault] = &[
     d("provenance.unfilled", "listed", |d| d.provenance.receipts[0].unfilled = vec!["samples/paint/mark".into()]),
     d("provenance.origin", "none", |d| d.provenance = Provenance::default()),
     d("provenance.license", "none", |d| d.license = None),
+    d("provenance.license", "a-name-with-spaces", |d| d.license = Some("CC BY 4.0".into())),
+    d("provenance.license", "open-bracket", |d| d.license = Some("(MIT OR Apache-2.0".into())),
     d("provenance.license", "a-sentence", |d| d.license = Some("free for all, ask us".into())),
 ];
 

@@ -74,7 +74,7 @@ fn faults_of_the_kit_have_the_same_verdict() {
     for (_, fault) in chosen {
         let file = folder.path().join(fault.file_name());
         std::fs::write(&file, fault.bytes()).unwrap();
-        let expected = match validate_bytes(&fault.bytes()).status() {
+        let expected = match validate_bytes(fault.bytes()).status() {
             Status::Valid => 0,
             Status::Invalid => 1,
             Status::Unreadable => 2,

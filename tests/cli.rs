@@ -286,5 +286,9 @@ fn rules_are_listed_and_explained() {
         assert!(id.starts_with("bbrf:1.0:"), "{id}");
         bbrf().args(["explain", id]).assert().success();
     }
+    let explained = stdout(bbrf().args(["explain", "BB0403"]));
+    for part in ["geometry.unknown", "Rows of a sample SHOULD have a geometry.", "error under --profile archive"] {
+        assert!(explained.contains(part), "{part}: {explained}");
+    }
     bbrf().args(["explain", "no.such-rule"]).assert().code(2);
 }

@@ -49,7 +49,7 @@ fn a_brdf_is_the_factor_over_pi_beside_the_factor() {
     assert_eq!(brdf.quantity.kind, QuantityKind::Brdf);
     let step = after.provenance.steps.last().unwrap();
     assert!(step.action.contains("`scan-brdf` is `scan` converted: radiance-factor (1"), "{}", step.action);
-    let report = validate_bytes(&std::fs::read(&output).unwrap());
+    let report = validate_bytes(std::fs::read(&output).unwrap());
     let grave: Vec<_> = report.findings.iter().filter(|finding| finding.severity > Severity::Info).collect();
     assert!(grave.is_empty(), "{grave:#?}");
 }

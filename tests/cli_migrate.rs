@@ -44,7 +44,7 @@ fn scan(tree: &mut Group) -> &mut Group {
 }
 
 fn found(path: &Path) -> Vec<String> {
-    let report = validate_bytes(&std::fs::read(path).unwrap());
+    let report = validate_bytes(std::fs::read(path).unwrap());
     let grave = report.findings.iter().filter(|finding| finding.severity > Severity::Info);
     grave.map(|finding| format!("{} {}", finding.alias, finding.place)).collect()
 }
@@ -66,8 +66,22 @@ fn a_later_minor_version_is_a_warning_and_no_damage() {
     let file = later(folder.path(), |_| {});
     assert_eq!(found(&file), ["BB0004 /@bbrf_version"]);
     let output = folder.path().join("out.bbrf");
-    let warned = contains("1.7").and(contains("newer"));
-    bbrf().arg("migrate").arg(&file).assert().success().stderr(warned);
+    let warned = || contains("1.7").and(contains("newer"));
+    bbrf().arg("migrate").arg(&file).assert().success().stderr(warned());
+    let (model, geometry) = (format!("{}#fit", file.display()), folder.path().join("geometry.csv"));
+    std::fs::write(&geometry, "theta_i_deg,phi_i_deg,theta_v_deg,phi_v_deg\n30,180,10,0\n").unwrap();
+    bbrf().args(["eval", "--model", &model, "--geometry"]).arg(&geometry).assert().success().stderr(warned());
+    let (page, converted) = (folder.path().join("page.html"), folder.path().join("converted.bbrf"));
+    let (page, converted) = (page.to_str().unwrap(), converted.to_str().unwrap());
+    for arguments in [
+        &["info"][..],
+        &["fit", "--measurement", "scan"],
+        &["convert", "--measurement", "scan", "--to", "brdf", "-o", converted],
+        &["export", "--measurement", "scan", "--to", "csv"],
+        &["report", "-o", page],
+    ] {
+        bbrf().args(arguments).arg(&file).assert().success().stderr(warned());
+    }
     bbrf().arg("migrate").arg(&file).arg("-o").arg(&output).assert().success();
     // Nothing was added, so nothing is lost.
     assert_eq!(digest(&open_verified(&output).unwrap()).unwrap(), digest(&conformance::clean()).unwrap());
@@ -95,6 +109,10 @@ fn what_a_later_version_adds_is_read_over_and_never_dropped() {
         let file = later(folder.path(), add);
         assert_eq!(found(&file), ["BB0004 /@bbrf_version"], "{what}");
         assert!(open_verified(&file).is_ok(), "{what}: it can be read");
+        if let Some((_, name)) = what.split_once(['@', '/']) {
+            let mut json = bbrf();
+            json.args(["export", "--to", "json"]).arg(&file).assert().success().stderr(contains(name));
+        }
         assert!(matches!(open_to_rewrite(&file), Err(ReadError::Later { .. })), "{what}");
         let output = folder.path().join("out.bbrf");
         let refused = bbrf().arg("migrate").arg(&file).arg("-o").arg(&output).assert().code(1);
@@ -133,7 +151,7 @@ fn a_better_description_is_no_change() {
     let value = scan(&mut tree).dataset_mut("value").unwrap();
     value.attributes.insert("long_name".into(), Array::text("what the sheet sends back, over what a white plate does"));
     scan(&mut tree).dataset_mut("theta_i").unwrap().attributes.remove("long_name");
-    let report = validate_bytes(&tree_bytes(&tree).unwrap());
+    let report = validate_bytes(tree_bytes(&tree).unwrap());
     // It is said, because no digest would tell it from damage.
     let found: Vec<_> = report.findings.iter().map(|finding| (finding.alias, finding.severity)).collect();
     assert_eq!(found, [("BB0013", Severity::Info)], "{:#?}", report.findings);

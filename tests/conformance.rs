@@ -11,7 +11,7 @@ use conformance::{FAULTS, Fault, clean, clean_bytes, found, hemisphere};
 
 #[test]
 fn the_clean_file_is_left_alone() {
-    let report = validate_bytes(&clean_bytes());
+    let report = validate_bytes(clean_bytes());
     assert_eq!(report.findings, [], "{:#?}", report.findings);
     assert_eq!(report.status(), Status::Valid);
 }
@@ -32,7 +32,7 @@ fn every_fault_is_found_by_its_rule() {
 #[test]
 fn the_published_table_is_in_step() {
     let answer = |fault: &Fault| {
-        let report = validate_bytes(&fault.bytes());
+        let report = validate_bytes(fault.bytes());
         let named = found(&fault.bytes()).into_iter().map(str::to_owned).collect();
         (fault.file_name(), Answer::Ended { accepted: report.status() == Status::Valid, named })
     };
@@ -46,7 +46,7 @@ fn the_published_table_is_in_step() {
 #[test]
 fn what_is_no_hdf5_is_unreadable() {
     for fault in FAULTS.iter().filter(|fault| fault.rule == "structure.hdf5") {
-        assert_eq!(validate_bytes(&fault.bytes()).status(), Status::Unreadable, "{}", fault.file_name());
+        assert_eq!(validate_bytes(fault.bytes()).status(), Status::Unreadable, "{}", fault.file_name());
     }
 }
 
@@ -78,7 +78,7 @@ fn each_rule_has_a_fault_a_clause_and_one_name() {
 #[test]
 fn a_finding_of_physics_has_its_z_score() {
     let fault = FAULTS.iter().find(|fault| fault.rule == "physics.negative").unwrap();
-    let report = validate_bytes(&fault.bytes());
+    let report = validate_bytes(fault.bytes());
     let finding = report.findings.iter().find(|finding| finding.rule.ends_with("physics.negative")).unwrap();
     assert!(finding.z.unwrap() > 10.0 && finding.severity == Severity::Warning, "{finding:#?}");
     assert_eq!(finding.place.index, [0, 20]);
@@ -120,9 +120,24 @@ fn a_finding_says_what_stands_there_and_what_belongs_there() {
         ("structure.complete", "no-stated-mask", "nothing", "uint8"),
     ] {
         let fault = FAULTS.iter().find(|fault| fault.rule == rule && fault.what == what).unwrap();
-        let report = validate_bytes(&fault.bytes());
+        let report = validate_bytes(fault.bytes());
         let finding = report.findings.iter().find(|finding| finding.rule.ends_with(rule)).unwrap();
         assert_eq!(finding.found, found, "{rule} {what}");
         assert!(finding.expected.contains(expected), "{rule} {what}: {}", finding.expected);
+    }
+}
+
+/// What cannot be read as a direction is placed where it stands.
+#[test]
+fn an_angle_below_its_range_is_found_in_its_own_column() {
+    for (column, angle) in [("theta_v", -10.0), ("phi_i", -10.0)] {
+        let mut tree = bbrf::container::document_tree(&clean()).unwrap();
+        conformance::numbers(tree.at_mut("measurement/scan").unwrap(), column)[3] = angle;
+        bbrf::container::sign_tree(&mut tree);
+        let report = bbrf::validate::validate_bytes(bbrf::container::tree_bytes(&tree).unwrap());
+        let places: Vec<_> = report.findings.iter().map(|finding| finding.place.to_string()).collect();
+        assert!(!places.is_empty());
+        let right = format!("/measurement/scan/{column}[3]");
+        assert!(places.iter().all(|place| *place == right), "{places:?}");
     }
 }

@@ -23,7 +23,7 @@ fn a_legal_encoding_keeps_the_digest_and_an_unusual_one_is_named() {
     let folder = tempfile::tempdir().unwrap();
     let clean = folder.path().join("clean.bbrf");
     std::fs::write(&clean, clean_bytes()).unwrap();
-    let digest = validate_bytes(&clean_bytes()).digest.unwrap();
+    let digest = validate_bytes(clean_bytes()).digest.unwrap();
     let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("conformance/encodings.py");
     let output = Command::new(python).arg(script).arg(&clean).arg(folder.path().join("encodings")).output().unwrap();
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));

@@ -104,7 +104,7 @@ fn what_the_python_example_writes_is_valid_and_reads_back() {
     let file = folder.path().join("written.bbrf");
     let Some(output) = python("write_bbrf.py", &file) else { return };
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    let report = validate_bytes(&std::fs::read(&file).unwrap());
+    let report = validate_bytes(std::fs::read(&file).unwrap());
     assert_eq!(report.findings, [], "{:#?}", report.findings);
     let opened = read_file(&file).unwrap();
     assert_eq!((opened.mismatched, opened.unknown), (vec![], vec![]));

@@ -7,8 +7,9 @@ mod documents;
 use std::path::{Path, PathBuf};
 
 use assert_cmd::Command;
+use bbrf::container::tree::Group;
 use bbrf::container::{open_verified, write_file};
-use bbrf::dataset::{Document, Excitation, Measurement};
+use bbrf::dataset::{Document, Excitation, Extension, Measurement};
 use bbrf::export::table_csv;
 use bbrf::import::{Options, import};
 use bbrf::quantity::{Band, Bandpass, EmissionAxis, Flag, Uncertainty};
@@ -53,7 +54,8 @@ fn simulated(folder: &Path) -> PathBuf {
 #[test]
 fn every_measurement_of_the_simulated_scan() {
     let folder = tempfile::tempdir().unwrap();
-    let document = open_verified(&simulated(folder.path())).unwrap();
+    let mut document = open_verified(&simulated(folder.path())).unwrap();
+    document.extensions = vec![Extension { domain: documents::id("org.example.arm"), content: Group::default() }];
     for id in ["scan", "radiance", "white", "dark"] {
         let (again, _) = assert_same_rows(&document, document.measurement(id).unwrap());
         assert_eq!(again.license, document.license, "{id}");
@@ -61,6 +63,7 @@ fn every_measurement_of_the_simulated_scan() {
     let (_, lost) = assert_same_rows(&document, document.measurement("scan").unwrap());
     assert!(lost.iter().any(|line| line.contains("derivation")), "{lost:?}");
     assert!(lost.iter().any(|line| line.contains("shared uncertainty")), "{lost:?}");
+    assert!(lost.iter().any(|line| line.contains("org.example.arm")), "{lost:?}");
 }
 
 #[test]

@@ -60,7 +60,7 @@ fn links_out_of_the_file_and_to_nothing_are_errors() {
     for (number, (links, named)) in cases.into_iter().enumerate() {
         let path = folder.path().join(format!("{number}.bbrf"));
         write_file(&documents::small(), &path).unwrap();
-        let report = validate_bytes(&with_links(&path, links));
+        let report = validate_bytes(with_links(&path, links));
         assert_ne!(report.status(), Status::Valid, "{named}");
         let error = report.findings.iter().find(|finding| finding.severity == Severity::Error).unwrap();
         assert!(format!("{} {}", error.place, error.found).contains(named), "{error:?}");
@@ -72,6 +72,6 @@ fn a_link_to_what_is_in_the_file_is_content_that_the_standard_does_not_know() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.bbrf");
     write_file(&documents::small(), &path).unwrap();
-    let report = validate_bytes(&with_links(&path, &[("first", None, "/measurement/scan/value")]));
+    let report = validate_bytes(with_links(&path, &[("first", None, "/measurement/scan/value")]));
     assert!(report.findings.iter().all(|finding| finding.severity != Severity::Error), "{:?}", report.findings);
 }

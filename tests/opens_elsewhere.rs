@@ -69,7 +69,7 @@ fn h5py_netcdf4_and_xarray_show_what_we_wrote() {
     assert!(documents::same(&copied.document, &document));
     // Laid out by another library, and with an attribute added: neither is damage.
     for file in [&copy, &path] {
-        let findings = validate_bytes(&std::fs::read(file).unwrap()).findings;
+        let findings = validate_bytes(std::fs::read(file).unwrap()).findings;
         assert!(findings.iter().all(|finding| finding.rule != rule("structure.bytes").unwrap().id), "{findings:?}");
     }
     let appended = read_file(&path).unwrap();

@@ -7,7 +7,7 @@ mod documents;
 
 use std::path::Path;
 
-use bbrf::dataset::{Document, Excitation};
+use bbrf::dataset::{Document, Excitation, Extension};
 use bbrf::export::universal_brdf::write;
 use bbrf::import::{Format, Options, import};
 use bbrf::quantity::{Basis, Flag, NormalisedAt, Part, Quantity, QuantityKind, Reference, ReferenceLight};
@@ -245,6 +245,11 @@ fn there_and_back_is_the_same_to_the_bit() {
     back.provenance = Default::default();
     assert_eq!(back, document);
     assert_eq!(written(&back).0, text, "and there again");
+    // What was kept of theirs goes back; what is of others has no place.
+    let extension = |lost: &[String]| lost.iter().filter(|line| line.contains("extension")).count();
+    assert_eq!(extension(&written(&document).1), 0);
+    back.extensions.push(Extension { domain: documents::id("org.example.arm"), ..back.extensions[0].clone() });
+    assert_eq!(extension(&written(&back).1), 1);
 }
 
 /// The rules of their schema that columns and required members have to follow, in our own words.

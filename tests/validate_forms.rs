@@ -113,13 +113,16 @@ fn sarif_follows_the_official_schema() {
         folder = folder.with(&fault.file_name(), fault.bytes());
     }
     let faulty: Vec<String> = FAULTS.iter().map(conformance::Fault::file_name).collect();
-    let mut arguments = vec!["--output", "sarif"];
+    folder = folder.with("#1 50% é&.bbrf", b"not HDF5".to_vec());
+    let mut arguments = vec!["--output", "sarif", "#1 50% é&.bbrf"];
     arguments.extend(FOUR);
     arguments.extend(faulty.iter().map(String::as_str));
     let sarif: Value = serde_json::from_str(&folder.said(&arguments)).unwrap();
     let errors: Vec<String> = validator.iter_errors(&sarif).map(|error| error.to_string()).take(5).collect();
     assert!(errors.is_empty(), "{errors:#?}");
     let run = &sarif["runs"][0];
+    let odd = &run["results"][0]["locations"][0]["physicalLocation"]["artifactLocation"]["uri"];
+    assert_eq!(odd, "%231%2050%25%20%C3%A9%26.bbrf", "RFC 3986");
     let results = run["results"].as_array().unwrap();
     assert!(results.len() > FAULTS.len());
     for result in results {
@@ -241,9 +244,41 @@ fn a_baseline_leaves_out_what_is_known_and_nothing_new() {
     assert_eq!(folder.status(&["--baseline", "known.json", "sub/changed.bbrf"]), 0, "another folder");
     fs::write(folder.at("warned.bbrf"), fault("digest.object", "one-angle")).unwrap();
     assert_eq!(folder.status(&["--baseline", "known.json", "warned.bbrf"]), 1, "new");
+    fs::write(folder.at("changed.bbrf"), fault("digest.document", "one-value")).unwrap();
+    assert_eq!(folder.status(&["--baseline", "known.json", "changed.bbrf"]), 1, "another change of the same dataset");
     fs::write(folder.at("bad.json"), "{}").unwrap();
     assert_eq!(folder.status(&["--baseline", "bad.json", "a clean.bbrf"]), 2);
     assert!(folder.reported(&["--baseline", "bad.json", "a clean.bbrf"]).contains("--write-baseline"));
+}
+
+#[test]
+fn what_is_known_of_one_file_says_nothing_of_another_of_its_name() {
+    let folder = Folder::new();
+    for sample in ["a", "b"] {
+        fs::create_dir(folder.at(sample)).unwrap();
+        fs::write(folder.at(sample).join("scan.bbrf"), warned()).unwrap();
+    }
+    let deny = |arguments: &[&'static str]| folder.status(&with(&["--deny", "warnings"], arguments));
+    assert_eq!(deny(&["--write-baseline", "known.json", "a/scan.bbrf"]), 1);
+    assert_eq!(deny(&["--baseline", "known.json", "a/scan.bbrf"]), 0);
+    assert_eq!(deny(&["--baseline", "known.json", "./a/scan.bbrf"]), 0);
+    assert_eq!(deny(&["--baseline", "known.json", "b/scan.bbrf"]), 1);
+}
+
+/// Without the check before reading, memory for the whole of it is asked for, and the program ends in an abort.
+#[test]
+fn a_file_of_a_terabyte_is_refused_and_the_next_is_checked() {
+    let folder = Folder::new().with("clean.bbrf", clean_bytes());
+    fs::File::create(folder.at("huge.bbrf")).unwrap().set_len(1 << 40).unwrap();
+    assert_eq!(folder.status(&["huge.bbrf", "clean.bbrf"]), 2);
+    let said = folder.said(&["huge.bbrf", "clean.bbrf"]);
+    assert!(said.contains("more than the 17179869184 bytes") && said.contains("clean.bbrf: valid"), "{said}");
+    let info =
+        assert_cmd::Command::cargo_bin("bbrf").unwrap().arg("info").arg(folder.at("huge.bbrf")).output().unwrap();
+    assert_eq!(info.status.code(), Some(2));
+    if cfg!(unix) {
+        assert!(folder.said(&["/dev/zero"]).contains("a device and no file"));
+    }
 }
 
 /// The clean file as somebody else wrote it: without digests, and with content of their own.
@@ -304,13 +339,13 @@ fn a_repair_makes_an_unusual_encoding_portable() {
     let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("conformance/encodings.py");
     let mut command = std::process::Command::new(python);
     assert!(command.arg(script).arg(folder.at("clean.bbrf")).arg(folder.0.path()).output().unwrap().status.success());
-    let digest = validate_bytes(&clean_bytes()).digest;
+    let digest = validate_bytes(clean_bytes()).digest;
     for name in ["big-endian", "variable-strings", "no-creation-order", "user-block", "no-scales", "fill-value"] {
         let file = format!("{name}.bbrf");
         assert_eq!(folder.status(&["--deny", "portability", &file]), 1, "{name}");
         let said = folder.reported(&["--fix", "--deny", "portability", &file]);
         assert!(said.contains("mended portability."), "{name}: {said}");
         assert_eq!(folder.status(&["--deny", "portability", &file]), 0, "{name}");
-        assert_eq!(validate_bytes(&fs::read(folder.at(&file)).unwrap()).digest, digest, "{name}");
+        assert_eq!(validate_bytes(fs::read(folder.at(&file)).unwrap()).digest, digest, "{name}");
     }
 }

@@ -6,6 +6,7 @@
 
 mod command;
 mod exit;
+mod opened;
 mod output;
 mod overwrite;
 mod progress;

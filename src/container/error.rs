@@ -24,7 +24,8 @@ pub enum ReadError {
     },
     /// More than a reader should be asked to take.
     #[error(
-        "{place}: {found} {what}, at most {limit} expected; the file is damaged, or raise the limit if you trust it"
+        "{place}: {found} {what}, at most {limit} expected; the file is damaged, or beyond what this reader takes (clause \
+         13 of the specification)"
     )]
     Limit {
         /// Where.

@@ -42,7 +42,7 @@ pub(crate) use expected::in_words;
 pub use file_bytes::FileBytes;
 pub use foreign::Foreign;
 pub use limits::Limits;
-pub use open::{Inspection, Mismatch, Opened, inspect, open_to_rewrite, open_verified, read_bytes, read_file};
+pub use open::{Inspection, Mismatch, Opened, inspect, open, open_to_rewrite, open_verified, read_bytes, read_file};
 pub use read::part::{Part, read_part};
 
 #[cfg(feature = "write")]

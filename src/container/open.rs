@@ -34,6 +34,8 @@ pub struct Opened {
     pub foreign: Foreign,
     /// Paths of content that is not what the digests or the standard say, with what is wrong.
     pub mismatched: Vec<String>,
+    /// The version of the standard that the file states, where it is later than the one known here.
+    pub later_version: Option<String>,
 }
 
 /// Reads a file within the default [`Limits`], whether or not its digests agree.
@@ -42,9 +44,10 @@ pub struct Opened {
 /// [`ReadError`] with the place; nothing of a file is returned when anything in it cannot be read.
 pub fn read_file(path: &Path) -> Result<Opened, ReadError> {
     let name = path.display().to_string();
-    let bytes =
-        FileBytes::read(path).map_err(|source| ReadError::Io { place: Box::new(Place::file(name.clone())), source })?;
-    read_bytes(bytes, &Limits::default()).map_err(|error| error.in_file(&name))
+    let limits = Limits::default();
+    let bytes = FileBytes::read(path, limits.file_bytes)
+        .map_err(|source| ReadError::Io { place: Box::new(Place::file(name.clone())), source })?;
+    read_bytes(bytes, &limits).map_err(|error| error.in_file(&name))
 }
 
 /// Reads the bytes of a file.
@@ -52,14 +55,20 @@ pub fn read_file(path: &Path) -> Result<Opened, ReadError> {
 /// # Errors
 /// As [`read_file`].
 pub fn read_bytes(bytes: impl Into<FileBytes>, limits: &Limits) -> Result<Opened, ReadError> {
-    let Inspection { document, stored_digest, computed_digest, foreign, unknown, mismatches, .. } =
+    let Inspection { tree, document, stored_digest, computed_digest, foreign, unknown, mismatches, .. } =
         look(bytes.into(), limits, Depth::Content)?;
     let document = document?;
     document.check().map_err(|source| ReadError::Document { place: Box::default(), source })?;
     let computed_digest =
         computed_digest.ok_or_else(|| ReadError::unexpected("/", "a text with U+0000", "a storable document"))?;
     let mismatched = mismatches.iter().map(Mismatch::to_string).collect();
-    Ok(Opened { document, stored_digest, computed_digest, foreign, unknown, mismatched })
+    let later_version = stored_text(&tree.attributes, name::BBRF_VERSION).filter(|version| is_later(version));
+    Ok(Opened { document, stored_digest, computed_digest, foreign, unknown, mismatched, later_version })
+}
+
+/// True for a later minor version of the same major one.
+fn is_later(version: &str) -> bool {
+    layout::parse_version(version).is_some_and(|(major, minor)| major == layout::MAJOR && minor > layout::MINOR)
 }
 
 /// The tree of a document with its digests.
@@ -183,7 +192,7 @@ impl std::fmt::Display for Mismatch {
 /// # Errors
 /// As [`read_file`]; and [`ReadError::Damaged`], naming what differs, where a digest is missing or does not agree.
 pub fn open_verified(path: &Path) -> Result<Document, ReadError> {
-    verified(path).map(|opened| opened.document)
+    open(path).map(|opened| opened.document)
 }
 
 /// The same with what the file holds beside the standard, for who writes the document again.
@@ -191,16 +200,20 @@ pub fn open_verified(path: &Path) -> Result<Document, ReadError> {
 /// # Errors
 /// As [`open_verified`]; and [`ReadError::Later`] where a later version of the standard put content into the file that
 /// would no longer be digested, or be lost.
-pub fn open_to_rewrite(path: &Path) -> Result<(Document, Foreign), ReadError> {
-    let opened = verified(path)?;
+pub fn open_to_rewrite(path: &Path) -> Result<Opened, ReadError> {
+    let opened = open(path)?;
     if opened.stored_digest.as_deref() == Some(opened.computed_digest.as_str()) {
-        return Ok((opened.document, opened.foreign));
+        return Ok(opened);
     }
     let place = Box::new(Place::file(path.display().to_string()));
     Err(ReadError::Later { place, unknown: opened.unknown })
 }
 
-fn verified(path: &Path) -> Result<Opened, ReadError> {
+/// The same with all that is known of the file.
+///
+/// # Errors
+/// As [`open_verified`].
+pub fn open(path: &Path) -> Result<Opened, ReadError> {
     let opened = read_file(path)?;
     if opened.mismatched.is_empty() {
         return Ok(opened);
@@ -244,9 +257,9 @@ struct Later {
 
 impl Later {
     fn of(tree: &Group) -> Self {
-        let stated = tree.attributes.get(name::BBRF_VERSION).and_then(Array::as_text).and_then(layout::parse_version);
+        let stated = tree.attributes.get(name::BBRF_VERSION).and_then(Array::as_text);
         let mut signed = BTreeMap::new();
-        if !stated.is_some_and(|(major, minor)| major == layout::MAJOR && minor > layout::MINOR) {
+        if !stated.is_some_and(is_later) {
             return Self { stands: BTreeMap::new(), signed };
         }
         tree.visit("", &mut |path, object| {

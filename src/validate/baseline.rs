@@ -1,6 +1,7 @@
 //! Findings that are known and accepted, so that a pipeline hears of what is new.
 
 use std::collections::BTreeMap;
+use std::path::{Component, Path};
 
 use serde::{Deserialize, Serialize};
 
@@ -65,18 +66,33 @@ impl Baseline {
         if baseline.schema == FORM { Ok(baseline) } else { Err(BaselineError::Form(baseline.schema)) }
     }
 
-    /// The fingerprints with the gravest severity that each is accepted at.
-    pub(super) fn accepted(&self) -> BTreeMap<String, Severity> {
-        let mut accepted = BTreeMap::new();
-        for known in &self.known {
-            let severity = accepted.entry(known.fingerprint.clone()).or_insert(known.severity);
-            *severity = known.severity.max(*severity);
+    /// What is accepted, by fingerprint.
+    pub(super) fn accepted(&self) -> Accepted {
+        let mut accepted = Accepted::new();
+        for Known { place, severity, fingerprint, .. } in &self.known {
+            let file = place.file.clone().unwrap_or_default();
+            accepted.entry(fingerprint.clone()).or_default().push((file, *severity));
         }
         accepted
     }
 }
 
-/// True where the finding is accepted as grave as it is now.
-pub(super) fn is_known(accepted: &BTreeMap<String, Severity>, finding: &Finding) -> bool {
-    !accepted.is_empty() && accepted.get(&finding.fingerprint()).is_some_and(|severity| *severity >= finding.severity)
+/// The files, as they were named, in which a finding of a fingerprint is accepted, and how grave.
+pub(super) type Accepted = BTreeMap<String, Vec<(String, Severity)>>;
+
+/// True where the finding is accepted in this file, as grave as it is now.
+pub(super) fn is_known(accepted: &Accepted, finding: &Finding) -> bool {
+    let file = finding.place.file.as_deref().unwrap_or_default();
+    let covers = |(then, severity): &(String, Severity)| *severity >= finding.severity && may_be_one_file(then, file);
+    !accepted.is_empty() && accepted.get(&finding.fingerprint()).is_some_and(|known| known.iter().any(covers))
+}
+
+/// True where one name is the end of the other: a pipeline may run in another folder, but `a/scan.bbrf` is not
+/// `b/scan.bbrf`.
+fn may_be_one_file(then: &str, now: &str) -> bool {
+    let names = |path| {
+        let parts = Path::new(path).components().rev();
+        parts.filter(|part| matches!(part, Component::Normal(_)))
+    };
+    names(then).zip(names(now)).all(|(then, now)| then == now)
 }

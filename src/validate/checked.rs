@@ -10,7 +10,7 @@ use sha2::{Digest as _, Sha256};
 use super::finding::{Finding, Report, Severity, Status};
 use super::grading::Grading;
 use super::{rule, validate_bytes};
-use crate::container::FileBytes;
+use crate::container::{FileBytes, Limits};
 use crate::dataset::Place;
 
 /// One file with what was found in it.
@@ -41,7 +41,7 @@ pub fn validate_files<P: AsRef<Path> + Sync>(files: &[P], grading: &Grading, don
 /// Validates one file.
 #[must_use]
 pub fn validate_file(path: &Path, grading: &Grading) -> Checked {
-    let report = match FileBytes::read(path) {
+    let report = match FileBytes::read(path, Limits::default().file_bytes) {
         Ok(bytes) => validate_bytes(bytes),
         Err(error) => not_read(&error),
     };
@@ -106,11 +106,15 @@ impl Checked {
 
 impl Finding {
     /// What stays the same between two runs over two versions of a file: the rule and the place, without the folder.
+    /// Of damage also what was found, because who accepts one change of the content does not accept the next.
     #[must_use]
     pub fn fingerprint(&self) -> String {
         let file = self.place.file.as_deref().map(Path::new).and_then(Path::file_name).unwrap_or_default();
         let place = Place { file: None, ..self.place.clone() };
-        let text = format!("{}|{}|{place}", self.rule, file.to_string_lossy());
+        let mut text = format!("{}|{}|{place}", self.rule, file.to_string_lossy());
+        if rule(self.rule).is_some_and(|rule| rule.group() == "digest" || rule.name() == "structure.bytes") {
+            text = format!("{text}|{}", self.found);
+        }
         Sha256::digest(text).iter().take(16).map(|byte| format!("{byte:02x}")).collect()
     }
 }

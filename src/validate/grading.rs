@@ -1,8 +1,6 @@
 //! How grave each rule is to whoever asks: profiles, the caller's own grades, and what is known already.
 
-use std::collections::BTreeMap;
-
-use super::baseline::{Baseline, is_known};
+use super::baseline::{Accepted, Baseline, is_known};
 use super::finding::{Finding, Severity};
 use super::registry::{Rule, rule};
 
@@ -67,6 +65,15 @@ pub const PROFILES: &[Profile] = &[
     },
 ];
 
+impl Profile {
+    /// The severity of a rule in this profile. An error is never made less.
+    #[must_use]
+    pub fn grade(&self, rule: &Rule) -> Severity {
+        let grade = self.grades.iter().rev().find(|(name, _)| covers(name, rule)).map(|(_, grade)| *grade);
+        grade.filter(|_| rule.severity != Error).unwrap_or(rule.severity)
+    }
+}
+
 /// The profile of a name.
 #[must_use]
 pub fn profile(name: &str) -> Option<&'static Profile> {
@@ -84,7 +91,7 @@ pub struct Grading {
     profile: Option<&'static Profile>,
     deny_warnings: bool,
     named: Vec<(String, Option<Severity>)>,
-    known: BTreeMap<String, Severity>,
+    known: Accepted,
 }
 
 impl Grading {
@@ -150,12 +157,7 @@ impl Grading {
         if rule.name() == "structure.hdf5" {
             return true;
         }
-        let grades = self.profile.map_or(&[][..], |profile| profile.grades);
-        for (_, severity) in grades.iter().filter(|(name, _)| covers(name, rule)) {
-            finding.severity = *severity;
-        }
-        // A profile never makes an error of a rule less than an error.
-        finding.severity = if rule.severity == Error { Error } else { finding.severity };
+        finding.severity = self.profile.map_or(rule.severity, |profile| profile.grade(rule));
         if self.deny_warnings && finding.severity == Warning {
             finding.severity = Error;
         }

@@ -8,6 +8,7 @@ mod baseline;
 mod census;
 mod checked;
 mod context;
+mod demand;
 mod finding;
 pub mod form;
 mod grading;

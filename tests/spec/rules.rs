@@ -8,21 +8,14 @@ pub fn rules() -> String {
     let mut body = String::new();
     for (number, group, title) in CLAUSES {
         let rows = RULES.iter().filter(|rule| rule.group() == *group).map(|rule| {
-            let grades = PROFILES.iter().flat_map(|profile| {
-                let named = |name: &&str| *name == rule.name() || *name == rule.group();
-                profile
-                    .grades
-                    .iter()
-                    .rev()
-                    .find(|(name, _)| named(name))
-                    .map(|(_, grade)| format!("{}: {}", profile.name, grade.name()))
-            });
-            let grades = grades.filter(|_| rule.severity.name() != "error").collect::<Vec<_>>().join(", ");
+            let graded = PROFILES.iter().filter(|profile| profile.grade(rule) != rule.severity);
+            let grades: Vec<String> =
+                graded.map(|profile| format!("{}: {}", profile.name, profile.grade(rule).name())).collect();
             [
                 code(rule.alias),
                 code(rule.name()),
                 rule.severity.name().to_owned(),
-                grades,
+                grades.join(", "),
                 rule.rationale.to_owned(),
                 rule.example.to_owned(),
             ]

@@ -8,9 +8,10 @@ use serde::Serialize;
 
 use super::export::chosen;
 use crate::cli::exit::{CommandResult, Outcome};
+use crate::cli::opened::open_to_rewrite;
 use crate::cli::output::{print_json, print_text};
 use crate::cli::overwrite::refuse_overwriting;
-use crate::container;
+use crate::container::{self, Opened};
 use crate::dataset::{Measurement, Step, Target, convert};
 use crate::quantity::{Basis, QuantityKind, Reference};
 
@@ -60,7 +61,7 @@ pub(crate) struct ConvertResult {
 pub(crate) fn run(arguments: &Arguments) -> CommandResult {
     let name = arguments.file.display();
     refuse_overwriting(&arguments.output, [arguments.file.clone()])?;
-    let (mut document, foreign) = container::open_to_rewrite(&arguments.file).map_err(|error| miette!("{error}"))?;
+    let Opened { mut document, foreign, .. } = open_to_rewrite(&arguments.file)?;
     if let Some(path) = foreign.lost().first() {
         return Err(miette!(
             help = "take it out, or write it as numbers or texts",

@@ -7,8 +7,8 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::cli::exit::{CommandResult, Outcome};
+use crate::cli::opened::open;
 use crate::cli::output::{print_json, print_message, print_text};
-use crate::container;
 use crate::dataset::{Document, Model, predict};
 use crate::import::{GeometryRow, read_geometries};
 use crate::quantity::Reference;
@@ -155,7 +155,7 @@ fn load(model: &str) -> Result<Loaded, miette::Report> {
     if bytes.first().is_some_and(|first| first.is_ascii_whitespace() || *first == b'{') {
         return from_json(path, &bytes);
     }
-    let document = container::open_verified(path.as_ref()).map_err(|error| miette!("{error}"))?;
+    let document = open(path.as_ref())?.document;
     let ids = || document.models.iter().map(|m| m.id.to_string()).collect::<Vec<_>>().join(", ");
     let model = match (id, document.models.as_slice()) {
         (Some(id), _) => {

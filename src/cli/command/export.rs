@@ -7,6 +7,7 @@ use miette::{IntoDiagnostic, miette};
 
 use super::import::geometry;
 use crate::cli::exit::{CommandResult, Outcome};
+use crate::cli::opened::open;
 use crate::cli::output::{print_bytes, print_message, write_output};
 use crate::cli::overwrite::refuse_overwriting;
 use crate::container::{self, Part};
@@ -57,9 +58,12 @@ pub(crate) fn run(arguments: &Arguments) -> CommandResult {
     if let Some(output) = &arguments.output {
         refuse_overwriting(output, [arguments.file.clone()])?;
     }
-    let document = match chosen_rows(arguments)? {
-        Some(part) => part,
-        None => container::open_verified(&arguments.file).map_err(|error| miette!("{error}"))?,
+    let (document, unknown) = match chosen_rows(arguments)? {
+        Some(part) => (part, Vec::new()),
+        None => {
+            let opened = open(&arguments.file)?;
+            (opened.document, opened.unknown)
+        }
     };
     let mut bytes = Vec::new();
     let lost = match arguments.to {
@@ -74,7 +78,7 @@ pub(crate) fn run(arguments: &Arguments) -> CommandResult {
         Format::Json => {
             let digest = container::digest(&document).map_err(|error| miette!("{error}"))?;
             json::write(&document, digest.as_str(), &mut bytes).into_diagnostic()?;
-            Vec::new()
+            unknown.into_iter().map(|path| format!("{path}, which the standard does not know")).collect()
         }
     };
     for what in lost {

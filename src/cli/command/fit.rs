@@ -12,9 +12,10 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::cli::exit::{CommandResult, Outcome};
+use crate::cli::opened::open_to_rewrite;
 use crate::cli::output::{not_written, print_json, print_text, report_error};
 use crate::cli::progress;
-use crate::container;
+use crate::container::{self, Opened};
 use crate::dataset::{Document, FittedParameter, Measurement, Model, Reduction, Role, Step};
 use crate::fit::{FitOptions, fit_measurement};
 use crate::quantity::{Reference, rounded_with_uncertainty};
@@ -188,7 +189,7 @@ pub(crate) fn run(arguments: &Arguments) -> CommandResult {
 }
 
 fn fit_file(arguments: &Arguments, file: &Path, output: Option<&Path>) -> Result<FittedModel, miette::Report> {
-    let (mut document, foreign) = container::open_to_rewrite(file).map_err(|error| miette!("{error}"))?;
+    let Opened { mut document, foreign, .. } = open_to_rewrite(file)?;
     let measurement = choose(&document, arguments.measurement.as_deref(), file)?;
     let options = FitOptions {
         terms: arguments.terms.clone(),

@@ -2,13 +2,13 @@
 
 use std::path::PathBuf;
 
-use miette::miette;
 use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::cli::exit::{CommandResult, Outcome};
+use crate::cli::opened::open_whatever;
 use crate::cli::output::{print_json, print_text};
-use crate::container::{self, Opened};
+use crate::container::Opened;
 use crate::dataset::{Measurement, Model};
 use crate::validate::counted;
 
@@ -81,7 +81,7 @@ struct ModelInfo {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> CommandResult {
-    let opened = container::read_file(&arguments.file).map_err(|error| miette!("{error}"))?;
+    let opened = open_whatever(&arguments.file)?;
     if arguments.digest {
         print_text(&opened.computed_digest.to_string())?;
         return Ok(Outcome::Done);

@@ -7,10 +7,11 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::cli::exit::{CommandResult, Outcome};
+use crate::cli::opened::say_later;
 use crate::cli::output::{not_written, print_json, print_message, print_text};
 use crate::cli::overwrite::refuse_overwriting;
 use crate::container::layout::{self, MINOR, VERSION};
-use crate::container::{self, Limits, ReadError, inspect};
+use crate::container::{self, FileBytes, Limits, Opened, ReadError, inspect};
 use crate::dataset::{Anonymised, Document, Step};
 
 /// Bring a file to the current version of the standard, or take the names of people out of it.
@@ -61,10 +62,7 @@ pub(crate) fn run(arguments: &Arguments) -> CommandResult {
     let version = stated_version(arguments)?;
     let is_later = layout::parse_version(&version).is_some_and(|(_, minor)| minor > MINOR);
     if is_later {
-        print_message(&format!(
-            "bbrf: warning: {name}: version {version} of the standard is newer than {VERSION}, which this program knows; it \
-             can be read, and what it adds is passed over"
-        ));
+        say_later(&arguments.file, &version);
     }
     let mut result = MigrateResult {
         file: name.clone(),
@@ -75,7 +73,7 @@ pub(crate) fn run(arguments: &Arguments) -> CommandResult {
         suspects: Vec::new(),
     };
     if let (Some(output), true) = (&arguments.output, arguments.anonymise || is_later) {
-        let (mut document, foreign) = match container::open_to_rewrite(&arguments.file) {
+        let Opened { mut document, foreign, .. } = match container::open_to_rewrite(&arguments.file) {
             Err(error @ ReadError::Later { .. }) => {
                 print_message(&format!("bbrf: {error}"));
                 return Ok(Outcome::Failed);
@@ -110,8 +108,10 @@ pub(crate) fn run(arguments: &Arguments) -> CommandResult {
 
 fn stated_version(arguments: &Arguments) -> Result<String, miette::Report> {
     let name = arguments.file.display();
-    let bytes = std::fs::read(&arguments.file).map_err(|error| miette!("{name}: cannot be read: {error}"))?;
-    let inspection = inspect(&bytes, &Limits::default()).map_err(|error| miette!("{name}: {error}"))?;
+    let limits = Limits::default();
+    let bytes = FileBytes::read(&arguments.file, limits.file_bytes)
+        .map_err(|error| miette!("{name}: cannot be read: {error}"))?;
+    let inspection = inspect(bytes, &limits).map_err(|error| miette!("{name}: {error}"))?;
     // A version that is not stated or not known is an error of the document.
     inspection.document.as_ref().map_err(|error| miette!("{name}: {error}"))?;
     let stated = inspection.tree.attributes.get(layout::name::BBRF_VERSION).and_then(|array| array.as_text());

@@ -7,9 +7,9 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::cli::exit::{CommandResult, Outcome};
+use crate::cli::opened::open;
 use crate::cli::output::{print_json, print_message, print_text, write_output};
 use crate::cli::overwrite::refuse_overwriting;
-use crate::container;
 use crate::report::{Figure, Pictures, page};
 
 /// Draw a file: one HTML page, and its figures as PNG and SVG.
@@ -44,7 +44,7 @@ pub(crate) fn run(arguments: &Arguments) -> CommandResult {
     if let Some(path) = &page_path {
         refuse_overwriting(path, [arguments.file.clone()])?;
     }
-    let document = container::open_verified(&arguments.file).map_err(|error| miette!("{error}"))?;
+    let document = open(&arguments.file)?.document;
     let pictures = Pictures::of(&document);
     let mut result = ReportResult { page: None, figures: Vec::new(), not_drawn: not_drawn(&pictures) };
     if let Some(folder) = &arguments.figures {

@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use crate::cli::exit::{CommandResult, Outcome};
 use crate::cli::output::{print_json, print_text};
-use crate::validate::{RULES, Rule, Severity, UnknownRule, rule};
+use crate::validate::{PROFILES, RULES, Rule, Severity, UnknownRule, rule};
 
 /// List the rules.
 #[derive(Debug, clap::Args)]
@@ -40,6 +40,8 @@ struct RuleText {
     severity: Severity,
     /// The clause of the specification that it checks.
     clause: u8,
+    /// What the specification demands, in its words.
+    demands: Vec<String>,
     rationale: &'static str,
     /// An example of a violation.
     example: &'static str,
@@ -50,7 +52,16 @@ struct RuleText {
 impl From<&Rule> for RuleText {
     fn from(rule: &Rule) -> Self {
         let Rule { id, alias, severity, rationale, example, repair, .. } = rule;
-        Self { id, alias, severity: *severity, clause: rule.clause(), rationale, example, repair }
+        Self {
+            id,
+            alias,
+            severity: *severity,
+            clause: rule.clause(),
+            demands: rule.demands(),
+            rationale,
+            example,
+            repair,
+        }
     }
 }
 
@@ -81,16 +92,26 @@ pub(crate) fn explain(arguments: &ExplainArguments) -> CommandResult {
     if arguments.json {
         print_json("bbrf:rules:1", &RulesResult { rules: vec![rule.into()] })?;
     } else {
-        print_text(&format!(
-            "{} ({}), {}, clause {} of the specification\n\n{}\n\nFor example: {}.\nRepair: {}",
-            rule.id,
-            rule.alias,
-            rule.severity.name(),
-            rule.clause(),
-            rule.rationale,
-            rule.example,
-            rule.repair
-        ))?;
+        print_text(&explained(rule))?;
     }
     Ok(Outcome::Done)
+}
+
+/// What people want to know of a rule.
+fn explained(rule: &Rule) -> String {
+    let graded = PROFILES.iter().filter(|profile| profile.grade(rule) != rule.severity);
+    let grades: Vec<String> =
+        graded.map(|profile| format!("{} under --profile {}", profile.grade(rule).name(), profile.name)).collect();
+    let grades = if grades.is_empty() { String::new() } else { format!(" ({})", grades.join(", ")) };
+    format!(
+        "{} ({}), {}{grades}\n\nClause {} of the specification: {}\n\nWhy: {}\nA violation: {}.\nRepair: {}",
+        rule.id,
+        rule.alias,
+        rule.severity.name(),
+        rule.clause(),
+        rule.demands().join(" "),
+        rule.rationale,
+        rule.example,
+        rule.repair
+    )
 }

@@ -7,6 +7,7 @@ use miette::miette;
 use crate::cli::exit::{CommandResult, Outcome};
 use crate::cli::output::{print_message, print_text, write_output};
 use crate::cli::progress::bar;
+use crate::container::{FileBytes, Limits};
 use crate::validate::{
     Baseline, Checked, Grading, PROFILES, Status, UnknownRule, form, profile, repair, validate_files,
 };
@@ -125,7 +126,9 @@ fn write_baseline(path: &Path, files: &[Checked]) -> Result<(), miette::Report> 
 fn fix(path: &Path, dry_run: bool) -> Result<String, miette::Report> {
     let name = path.display();
     // What cannot be read is reported by the validation that follows.
-    let Ok(bytes) = std::fs::read(path) else { return Ok(format!("{name}: cannot be read, not repaired")) };
+    let Ok(bytes) = FileBytes::read(path, Limits::default().file_bytes) else {
+        return Ok(format!("{name}: cannot be read, not repaired"));
+    };
     match repair(&bytes) {
         Ok(None) => Ok(format!("{name}: nothing that writing it again would mend")),
         Ok(Some(mended)) if dry_run => Ok(format!("{name}: would mend {}", mended.repaired.join(", "))),

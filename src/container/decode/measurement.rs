@@ -9,7 +9,7 @@ use super::super::tree::{Data, Values};
 use super::parts::{emission_axis, quantity};
 use super::{At, dataset_text, masks, numbers, parsed};
 use crate::dataset::{Acquisition, Derivation, DirectionTest, Excitation, Id, Measurement};
-use crate::quantity::{Component, Geometry, Statement, Uncertainty};
+use crate::quantity::{Component, Direction, DirectionError, Geometry, Statement, Uncertainty};
 
 pub(super) fn measurement(id: Id, at: &At<'_>) -> Result<Measurement, ReadError> {
     let standard = at.group.dataset(name::VALUE_U);
@@ -127,9 +127,18 @@ pub(super) fn rows(at: &At<'_>) -> Result<Vec<Acquisition>, ReadError> {
 }
 
 fn geometry(at: &At<'_>, [theta_i, phi_i, theta_v, phi_v]: &[Vec<f64>; 4], row: usize) -> Result<Geometry, ReadError> {
-    Geometry::from_degrees(theta_i[row], phi_i[row], theta_v[row], phi_v[row]).map_err(|error| {
-        let path = format!("{}[{row}]", at.member_path(name::THETA_I));
-        ReadError::unexpected(&path, error.to_string(), "four angles of a geometry")
+    let direction = |theta_deg: f64, phi_deg: f64, [theta, phi]: [&str; 2]| {
+        Direction::from_degrees(theta_deg, phi_deg).map_err(|error| {
+            let (column, angle, expected) = match error {
+                DirectionError::Phi(_) => (phi, phi_deg, "an azimuth of 0 up to 360 degrees"),
+                _ => (theta, theta_deg, "a polar angle of 0 to 90 degrees"),
+            };
+            ReadError::unexpected(&format!("{}[{row}]", at.member_path(column)), format!("{angle} degrees"), expected)
+        })
+    };
+    Ok(Geometry {
+        incidence: direction(theta_i[row], phi_i[row], [name::THETA_I, name::PHI_I])?,
+        viewing: direction(theta_v[row], phi_v[row], [name::THETA_V, name::PHI_V])?,
     })
 }
 

@@ -77,4 +77,7 @@ fn parts(document: &Document, measurement: &Measurement, note: &mut impl FnMut(b
         let more = part.aperture.is_some() || part.accessories.is_some() || part.distance_mm.is_some();
         note(more, format!("aperture, accessories and distance of the instrument `{}`", part.id));
     }
+    for extension in &document.extensions {
+        note(true, format!("the extension `{}`", extension.domain));
+    }
 }

@@ -91,8 +91,11 @@ fn parts(document: &Document, measurement: &Measurement, note: &mut impl FnMut(b
     let drift = measurement.conditions.relative_drift.is_some() || measurement.conditions.drift_handling.is_some();
     note(drift, "what is known of drift".to_owned());
     let others = document.measurements.len().saturating_sub(1);
-    note(others > 0, format!("{others} other measurements of the document"));
-    note(!document.models.is_empty(), format!("{} fitted models", document.models.len()));
+    note(others > 0, format!("the other measurements of the document ({others})"));
+    note(!document.models.is_empty(), format!("the fitted models ({})", document.models.len()));
     note(!document.provenance.receipts.is_empty(), "the receipts of imports".to_owned());
     note(!document.provenance.steps.is_empty(), "the steps since".to_owned());
+    for extension in document.extensions.iter().filter(|extension| extension.domain.as_str() != super::DOMAIN) {
+        note(true, format!("the extension `{}`", extension.domain));
+    }
 }

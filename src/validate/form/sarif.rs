@@ -55,13 +55,27 @@ fn descriptor(rule: &Rule) -> ReportingDescriptor {
         .id(rule.id)
         .name(rule.name())
         .short_description(text(rule.rationale))
+        .full_description(text(&rule.demands().join(" ")))
         .help(text(&format!("For example: {}. {}", rule.example, rule.repair)))
         .default_configuration(ReportingConfiguration::builder().level(level).build())
         .build()
 }
 
+/// The name of a file as a reference of RFC 3986: its unreserved characters and `/`, all others in per cent.
+fn uri(name: &str) -> String {
+    let mut uri = String::new();
+    for byte in name.replace('\\', "/").bytes() {
+        if byte.is_ascii_alphanumeric() || b"-._~/".contains(&byte) {
+            uri.push(char::from(byte));
+        } else {
+            uri.push_str(&format!("%{byte:02X}"));
+        }
+    }
+    uri
+}
+
 fn result(finding: &Finding) -> Result<serde_sarif::sarif::Result, serde_json::Error> {
-    let uri = finding.place.file.clone().unwrap_or_default().replace('\\', "/").replace(' ', "%20");
+    let uri = uri(finding.place.file.as_deref().unwrap_or_default());
     let artifact = ArtifactLocation::builder().uri(uri).build();
     let inside = Place { file: None, ..finding.place.clone() };
     let location = Location::builder()

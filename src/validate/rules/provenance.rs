@@ -39,21 +39,32 @@ pub(in super::super) fn license(context: &Context<'_>, found: &mut Finder) {
     let place = || Place::path(format!("/@{}", name::LICENSE));
     match &document.license {
         None => found.add(place(), "nothing", "the SPDX identifier of the licence, as in CC-BY-4.0"),
-        // The form of an SPDX expression: identifiers joined by AND, OR, WITH, with brackets.
-        Some(text) if text.is_empty() || !text.split([' ', '(', ')']).all(is_spdx_word) => {
+        Some(text) if !is_spdx_expression(text) => {
             found.add(place(), format!("`{text}`"), "an SPDX expression, as in CC-BY-4.0 or LicenseRef-our-terms");
         }
         Some(_) => {}
     }
 }
 
-fn is_spdx_word(word: &str) -> bool {
-    word.chars().all(|c| c.is_ascii_alphanumeric() || matches!(c, '-' | '.' | '+' | ':'))
-        && (word.is_empty()
-            || matches!(word, "AND" | "OR" | "WITH")
-            || word.contains('-')
-            || word.chars().any(|c| c.is_ascii_digit())
-            || word.len() <= 12)
+/// True for identifiers joined by AND, OR and WITH, with brackets (SPDX 2.3, annex D). Their list of licences grows, and
+/// is not asked.
+fn is_spdx_expression(text: &str) -> bool {
+    let is_identifier =
+        |word: &str| word.chars().all(|c| c.is_ascii_alphanumeric() || matches!(c, '-' | '.' | '+' | ':'));
+    let spaced = text.replace('(', " ( ").replace(')', " ) ");
+    let (mut depth, mut is_operand_next) = (0_usize, true);
+    for word in spaced.split_whitespace() {
+        let is_operator = matches!(word, "AND" | "OR" | "WITH");
+        match word {
+            "(" if is_operand_next => depth += 1,
+            ")" if !is_operand_next && depth > 0 => depth -= 1,
+            _ if is_operator != is_operand_next && (is_operator || is_identifier(word)) => {
+                is_operand_next = is_operator
+            }
+            _ => return false,
+        }
+    }
+    depth == 0 && !is_operand_next
 }
 
 pub(in super::super) fn extension_domain(context: &Context<'_>, found: &mut Finder) {

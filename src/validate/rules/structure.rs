@@ -45,7 +45,8 @@ pub(in super::super) fn minor_version(context: &Context<'_>, found: &mut Finder)
 
 pub(in super::super) fn conventions(context: &Context<'_>, found: &mut Finder) {
     let stated = context.root_text(name::CONVENTIONS).unwrap_or("");
-    if !stated.contains("BBRF") {
+    let mut words = stated.split([' ', ',', '/']);
+    if !words.any(|word| word.get(..4).is_some_and(|start| start.eq_ignore_ascii_case("BBRF"))) {
         let place = Place::path(format!("/@{}", name::CONVENTIONS));
         found.add(place, format!("`{stated}`"), format!("`{}`", layout::CONVENTIONS));
     }
