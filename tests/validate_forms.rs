@@ -251,6 +251,20 @@ fn a_baseline_leaves_out_what_is_known_and_nothing_new() {
     assert!(folder.reported(&["--baseline", "bad.json", "a clean.bbrf"]).contains("--write-baseline"));
 }
 
+/// Behind an error that ends the reading anything may change.
+#[test]
+fn no_baseline_accepts_a_document_that_cannot_be_read() {
+    let folder = four();
+    let undecodable = FAULTS.iter().map(conformance::Fault::bytes).find(|bytes| {
+        let report = validate_bytes(bytes.as_slice());
+        report.digest.is_none() && report.status() == bbrf::validate::Status::Invalid
+    });
+    fs::write(folder.at("no document.bbrf"), undecodable.unwrap()).unwrap();
+    assert_eq!(folder.status(&["--write-baseline", "all.json", "no document.bbrf", "changed.bbrf"]), 1);
+    assert_eq!(folder.status(&["--baseline", "all.json", "changed.bbrf"]), 0);
+    assert_eq!(folder.status(&["--baseline", "all.json", "no document.bbrf"]), 1);
+}
+
 #[test]
 fn what_is_known_of_one_file_says_nothing_of_another_of_its_name() {
     let folder = Folder::new();

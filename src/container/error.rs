@@ -15,7 +15,7 @@ pub enum ReadError {
         source: std::io::Error,
     },
     /// Not HDF5, or HDF5 that is damaged or encoded in a way that the reader does not know.
-    #[error("{place}: not readable as HDF5: {source}; the file is damaged, cut short or not HDF5: fetch it again")]
+    #[error("{place}: not readable as HDF5: {source}; {}", advice(source))]
     Encoding {
         /// Where.
         place: Box<Place>,
@@ -148,6 +148,19 @@ impl ReadError {
     }
 }
 
+/// What to do about an encoding that cannot be read.
+fn advice(source: &hdf5_reader::error::Error) -> &'static str {
+    /// Virtual datasets (HDF5 File Format Specification, IV.A.2.i).
+    const VIRTUAL: u8 = 3;
+    match source {
+        hdf5_reader::error::Error::UnsupportedLayoutClass(VIRTUAL) => {
+            "a virtual dataset has its values in other files, and the standard has none (clause 13): copy the values into \
+             this one"
+        }
+        _ => "the file is damaged, cut short or not HDF5: fetch it again",
+    }
+}
+
 /// Why a document cannot be put into the form of the standard.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -207,4 +220,19 @@ pub enum WriteError {
         /// Why.
         source: std::io::Error,
     },
+}
+
+#[cfg(test)]
+mod tests {
+    use hdf5_reader::error::Error;
+
+    use super::*;
+
+    #[test]
+    fn a_virtual_dataset_is_not_called_damaged() {
+        let said =
+            |class| ReadError::encoding("/measurement/scan/value", Error::UnsupportedLayoutClass(class)).to_string();
+        assert!(said(3).contains("copy the values") && !said(3).contains("damaged"), "{}", said(3));
+        assert!(said(9).contains("damaged"), "{}", said(9));
+    }
 }

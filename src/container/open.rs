@@ -67,7 +67,7 @@ pub fn read_bytes(bytes: impl Into<FileBytes>, limits: &Limits) -> Result<Opened
 }
 
 /// True for a later minor version of the same major one.
-fn is_later(version: &str) -> bool {
+pub(super) fn is_later(version: &str) -> bool {
     layout::parse_version(version).is_some_and(|(major, minor)| major == layout::MAJOR && minor > layout::MINOR)
 }
 

@@ -147,8 +147,7 @@ impl Grading {
 
     /// True where a graded finding is to be left out as known. That a file cannot be read is never left out.
     pub(super) fn knows(&self, finding: &Finding) -> bool {
-        let unreadable = rule(finding.rule).is_some_and(|rule| rule.name() == "structure.hdf5");
-        !unreadable && is_known(&self.known, finding)
+        is_known(&self.known, finding)
     }
 
     /// Grades a finding; false where it is to be left out. That a file cannot be read is never left out.

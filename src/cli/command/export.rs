@@ -7,7 +7,7 @@ use miette::{IntoDiagnostic, miette};
 
 use super::import::geometry;
 use crate::cli::exit::{CommandResult, Outcome};
-use crate::cli::opened::open;
+use crate::cli::opened::{open, say_later};
 use crate::cli::output::{print_bytes, print_message, write_output};
 use crate::cli::overwrite::refuse_overwriting;
 use crate::container::{self, Part};
@@ -99,7 +99,10 @@ fn chosen_rows(arguments: &Arguments) -> Result<Option<Document>, miette::Report
         (None, Some(rows)) => container::read_part(&arguments.file, id, |row, _| rows.contains(&row)),
         (None, None) => return Ok(None),
     };
-    let Part { measurement, bytes_read, file_bytes } = part.map_err(|error| miette!("{error}"))?;
+    let Part { measurement, later_version, bytes_read, file_bytes } = part.map_err(|error| miette!("{error}"))?;
+    if let Some(version) = &later_version {
+        say_later(&arguments.file, version);
+    }
     if measurement.acquisitions.is_empty() {
         return Err(miette!(help = "see `bbrf info`", "measurement `{id}` has no such row"));
     }

@@ -11,6 +11,7 @@ use super::super::decode::{decode_rows, measurement, version};
 use super::super::error::ReadError;
 use super::super::layout::name;
 use super::super::limits::Limits;
+use super::super::open::is_later;
 use super::super::tree::{Array, Data, Dataset, Group};
 use super::{Walk, last_name, lengths, options};
 use crate::dataset::{Acquisition, Id, Measurement, Place};
@@ -23,6 +24,8 @@ const MATRICES: [&str; 3] = [name::VALUE, name::VALUE_U, name::VALUE_FLAG];
 pub struct Part {
     /// The measurement with these rows alone. Its derivation, which tells of all rows, is left out.
     pub measurement: Measurement,
+    /// The version of the standard that the file states, where this program does not know it.
+    pub later_version: Option<String>,
     /// Bytes of the file that were read.
     pub bytes_read: u64,
     /// Bytes of the file.
@@ -48,6 +51,8 @@ fn part(path: &Path, id: &str, choose: &dyn Fn(usize, &Acquisition) -> bool) -> 
     let mut walk = Walk::new(&file, &[], &limits, file_bytes);
     let root = file.root_group().map_err(|error| ReadError::encoding("/", error))?;
     let attributes = walk.attributes(&root.attributes().map_err(|error| ReadError::encoding("/", error))?, "/")?;
+    let later_version = attributes.get(name::BBRF_VERSION).and_then(Array::as_text).filter(|version| is_later(version));
+    let later_version = later_version.map(str::to_owned);
     version(&Group { attributes, ..Group::default() })?;
     let place = format!("/{}/{id}", name::MEASUREMENT);
     let failed = |error| ReadError::encoding(&place, error);
@@ -80,7 +85,7 @@ fn part(path: &Path, id: &str, choose: &dyn Fn(usize, &Acquisition) -> bool) -> 
     measurement
         .check_shape()
         .map_err(|error| ReadError::Document { place: Box::new(Place::path(place.as_str())), source: error.into() })?;
-    Ok(Part { measurement, bytes_read: counted.read.load(Ordering::Relaxed), file_bytes })
+    Ok(Part { measurement, later_version, bytes_read: counted.read.load(Ordering::Relaxed), file_bytes })
 }
 
 /// A file that counts what is read of it.
