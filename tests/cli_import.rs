@@ -94,6 +94,14 @@ fn what_was_assumed_is_a_line_and_all_of_it_on_demand() {
     assert!(short.contains("--verbose") && !long.contains("--verbose"), "{short}");
     assert!(count(&long, "assumed:") > 1, "{long}");
     assert!(short.len() < long.len());
+    // What is cut is cut between words.
+    let assumed = short.lines().find(|line| line.starts_with("assumed:")).unwrap();
+    let begun: Vec<&str> =
+        assumed.split([';', ':']).map(str::trim).filter_map(|part| part.strip_suffix(" ...")).collect();
+    assert!(!begun.is_empty(), "{assumed}");
+    for part in begun {
+        assert!(long.contains(&format!("{part} ")), "`{part}` ends within a word: {assumed}");
+    }
 }
 
 #[test]

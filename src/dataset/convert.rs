@@ -168,9 +168,8 @@ fn geometry(measurement: &Measurement, row: usize) -> Result<&Geometry, NotConve
 
 /// Wavelength and width of a row's excitation, nm; NaN for a width that is not stated.
 fn excitation(measurement: &Measurement, row: usize) -> Option<(f64, f64)> {
-    let index = usize::try_from(measurement.acquisitions.get(row)?.excitation?).ok()?;
-    let state = measurement.excitations.get(index)?;
-    Some((state.actual_nm.or(state.wavelength_nm)?, state.fwhm_nm.unwrap_or(f64::NAN)))
+    let state = measurement.excitation_of(measurement.acquisitions.get(row)?)?;
+    Some((state.centre_nm()?, state.fwhm_nm.unwrap_or(f64::NAN)))
 }
 
 fn cell(measurement: &Measurement, row: usize, column: usize) -> Result<Cell, ConversionRefused> {

@@ -51,6 +51,14 @@ pub struct Excitation {
     pub correction: Option<BandpassCorrection>,
 }
 
+impl Excitation {
+    /// Its centre, nm: as calibrated, else nominal.
+    #[must_use]
+    pub fn centre_nm(&self) -> Option<f64> {
+        self.actual_nm.or(self.wavelength_nm)
+    }
+}
+
 /// One row of a measurement: one look of the instrument.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Acquisition {
@@ -199,6 +207,12 @@ impl Measurement {
     #[must_use]
     pub fn shape(&self) -> (usize, usize) {
         (self.acquisitions.len(), self.emission.len())
+    }
+
+    /// What fell on the sample in a row; `None` where the source does not say.
+    #[must_use]
+    pub fn excitation_of(&self, row: &Acquisition) -> Option<&Excitation> {
+        self.excitations.get(usize::try_from(row.excitation?).ok()?)
     }
 
     /// The flags of one value; none where the index is outside.

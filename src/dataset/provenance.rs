@@ -27,6 +27,14 @@ pub struct Step {
     pub time: Option<String>,
 }
 
+impl Step {
+    /// A step that this program does.
+    #[must_use]
+    pub fn by_this_program(action: String) -> Self {
+        Self { tool: concat!("bbrf ", env!("CARGO_PKG_VERSION")).to_owned(), action, time: None }
+    }
+}
+
 /// What an importer read, assumed and could not fill.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Receipt {

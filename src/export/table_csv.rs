@@ -96,8 +96,7 @@ fn angles(row: &Acquisition) -> Option<[f64; 4]> {
 }
 
 fn excitation_nm(measurement: &Measurement, row: &Acquisition) -> Option<f64> {
-    let state = usize::try_from(row.excitation?).ok()?;
-    measurement.excitations.get(state)?.wavelength_nm
+    measurement.excitation_of(row)?.wavelength_nm
 }
 
 fn line(measurement: &Measurement, row: &Acquisition, columns: &Columns, at: (usize, usize)) -> String {

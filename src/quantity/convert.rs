@@ -116,6 +116,15 @@ fn expect_same_geometry(quantity: &Quantity) -> Result<(), ConversionRefused> {
     }
 }
 
+/// `expected` says why the quantity has none.
+fn expect_no_reference(quantity: &Quantity, expected: &'static str) -> Result<(), ConversionRefused> {
+    match quantity.reference {
+        Reference::None => Ok(()),
+        Reference::Unstated => Err(ConversionRefused::ReferenceUnstated),
+        found => Err(ConversionRefused::Reference { found, expected }),
+    }
+}
+
 impl Reference {
     /// What the reference had of the beam's irradiance: cos(theta_i) of the value for `same-geometry`, cos(theta_ref)
     /// for `fixed-geometry`, 1 without a reference. A radiance factor is Y/E divided by this number.

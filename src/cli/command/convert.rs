@@ -92,11 +92,12 @@ pub(crate) fn run(arguments: &Arguments) -> CommandResult {
         unit: measurement.quantity.kind.unit(),
         without,
     };
-    document.provenance.steps.push(Step {
-        tool: concat!("bbrf ", env!("CARGO_PKG_VERSION")).to_owned(),
-        action: format!("`{}` is `{}` converted: {before} to {}", measurement.id, result.from, described(&measurement)),
-        time: None,
-    });
+    document.provenance.steps.push(Step::by_this_program(format!(
+        "`{}` is `{}` converted: {before} to {}",
+        measurement.id,
+        result.from,
+        described(&measurement)
+    )));
     document.measurements.push(measurement);
     container::write_file_keeping(&document, &foreign, &arguments.output).map_err(|error| miette!("{error}"))?;
     print(arguments, &result)?;

@@ -254,11 +254,10 @@ fn choose<'a>(document: &'a Document, asked: Option<&str>, file: &Path) -> Resul
 
 /// Puts the model into the document, in place of an older one of the same id.
 fn store(document: &mut Document, model: Model) {
-    document.provenance.steps.push(Step {
-        tool: concat!("bbrf ", env!("CARGO_PKG_VERSION")).to_owned(),
-        action: format!("fitted model `{}` to measurement `{}`", model.id, model.measurement),
-        time: None,
-    });
+    document
+        .provenance
+        .steps
+        .push(Step::by_this_program(format!("fitted model `{}` to measurement `{}`", model.id, model.measurement)));
     match document.models.iter_mut().find(|old| old.id == model.id) {
         Some(old) => *old = model,
         None => document.models.push(model),

@@ -278,12 +278,12 @@ fn assumptions(receipt: &Receipt, verbose: bool) -> Vec<String> {
     )]
 }
 
+/// The first clause, or as many whole words of it as there is room for.
 fn first_words(text: &str) -> String {
-    let clause = text.split([';', ':', '(']).next().unwrap_or(text).trim();
-    match clause.char_indices().nth(FIRST_WORDS) {
-        Some((end, _)) => format!("{} ...", clause[..end].trim_end()),
-        None => clause.to_owned(),
-    }
+    let clause = text.split([';', ':']).next().unwrap_or(text).trim();
+    let Some((room, _)) = clause.char_indices().nth(FIRST_WORDS) else { return clause.to_owned() };
+    let end = clause[..room].rfind(' ').unwrap_or(room);
+    format!("{} ...", clause[..end].trim_end())
 }
 
 /// What the source does not say: how many fields, or all of them.

@@ -140,11 +140,10 @@ fn anonymised(document: &mut Document) -> Result<Anonymised, miette::Report> {
         }
     }
     if !found.removed.is_empty() {
-        document.provenance.steps.push(Step {
-            tool: concat!("bbrf ", env!("CARGO_PKG_VERSION")).to_owned(),
-            action: format!("names of people taken out: {}", found.removed.join(", ")),
-            time: None,
-        });
+        document
+            .provenance
+            .steps
+            .push(Step::by_this_program(format!("names of people taken out: {}", found.removed.join(", "))));
     }
     Ok(found)
 }

@@ -65,8 +65,7 @@ fn named(id: &Id, title: Option<&str>) -> String {
 
 /// The excitation of all rows, where they differ in the wavelength at most, which has a column.
 pub(super) fn common_state(measurement: &Measurement) -> Option<&Excitation> {
-    let state = |row: Option<u32>| measurement.excitations.get(usize::try_from(row?).ok()?);
-    let mut states = measurement.acquisitions.iter().map(|row| state(row.excitation));
+    let mut states = measurement.acquisitions.iter().map(|row| measurement.excitation_of(row));
     let first = states.next()??;
     let same = |other: &Excitation| {
         other.light == first.light && other.fwhm_nm == first.fwhm_nm && other.filter == first.filter

@@ -50,7 +50,7 @@ impl Points {
         };
         let (i, v) = (geometry.incidence, geometry.viewing);
         let angles = [i.theta_deg(), i.phi_deg(), v.theta_deg(), v.phi_deg()];
-        let state = acquisition.excitation.and_then(|state| measurement.excitations.get(usize::try_from(state).ok()?));
+        let state = measurement.excitation_of(acquisition);
         for column in 0..measurement.emission.len() {
             let value = measurement.values.get((row, column)).map_or(f64::NAN, |value| value * scale);
             if !value.is_finite() {

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use super::super::kind::{NormalisedAt, Part, Quantity, QuantityKind, Reference, ReferenceLight};
 use super::super::wavelength::{Bandpass, WavelengthAxis};
-use super::{Conversion, ConversionRefused, expect_kind, expect_part, expect_same_geometry};
+use super::{Conversion, ConversionRefused, expect_kind, expect_no_reference, expect_part, expect_same_geometry};
 
 /// The width w(em) that the off-diagonal values of a Donaldson matrix contain, nm.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -125,13 +125,7 @@ pub fn brrdf_from_density(quantity: &Quantity) -> Result<Conversion, ConversionR
 pub fn density_from_brrdf(quantity: &Quantity) -> Result<Conversion, ConversionRefused> {
     expect_kind(quantity, QuantityKind::Brrdf, "`brrdf`")?;
     expect_part(quantity, Part::Luminescent)?;
-    match quantity.reference {
-        Reference::None => {}
-        Reference::Unstated => return Err(ConversionRefused::ReferenceUnstated),
-        found => {
-            return Err(ConversionRefused::Reference { found, expected: "`none`: a BRRDF is no ratio to a diffuser" });
-        }
-    }
+    expect_no_reference(quantity, "`none`: a BRRDF is no ratio to a diffuser")?;
     let quantity = Quantity {
         kind: DENSITY,
         normalised_at: NormalisedAt::Excitation,

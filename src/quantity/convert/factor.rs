@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use super::super::angle::cos_deg;
 use super::super::direction::Geometry;
 use super::super::kind::{NormalisedAt, Part, Quantity, QuantityKind, Reference, ReferenceLight};
-use super::{Conversion, ConversionRefused, expect_kind, expect_part, expect_same_geometry};
+use super::{Conversion, ConversionRefused, expect_kind, expect_no_reference, expect_part, expect_same_geometry};
 
 /// f_r = R / pi, sr-1: the perfect diffuser in the same geometry has a BRDF of 1/pi (Nicodemus et al. 1977).
 ///
@@ -33,13 +33,7 @@ pub fn brdf_from_radiance_factor(quantity: &Quantity) -> Result<Conversion, Conv
 pub fn radiance_factor_from_brdf(quantity: &Quantity) -> Result<Conversion, ConversionRefused> {
     expect_kind(quantity, QuantityKind::Brdf, "`brdf`")?;
     expect_part(quantity, Part::Elastic)?;
-    match quantity.reference {
-        Reference::None => {}
-        Reference::Unstated => return Err(ConversionRefused::ReferenceUnstated),
-        found => {
-            return Err(ConversionRefused::Reference { found, expected: "`none`: a BRDF is no ratio to a diffuser" });
-        }
-    }
+    expect_no_reference(quantity, "`none`: a BRDF is no ratio to a diffuser")?;
     let quantity = Quantity {
         kind: QuantityKind::RadianceFactor,
         normalised_at: NormalisedAt::Emission,

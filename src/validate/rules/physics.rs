@@ -76,9 +76,8 @@ pub(in super::super) fn negative(context: &Context<'_>, found: &mut Finder) {
 
 /// Nominal excitation of a row with its width, nm.
 fn excitation(measurement: &Measurement, row: usize) -> Option<(f64, f64)> {
-    let index = usize::try_from(measurement.acquisitions.get(row)?.excitation?).ok()?;
-    let state = measurement.excitations.get(index)?;
-    Some((state.actual_nm.or(state.wavelength_nm)?, state.fwhm_nm?))
+    let state = measurement.excitation_of(measurement.acquisitions.get(row)?)?;
+    Some((state.centre_nm()?, state.fwhm_nm?))
 }
 
 /// Emission wavelengths with the width of the bandpass, nm.
