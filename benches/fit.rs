@@ -6,10 +6,12 @@ mod scans;
 
 use std::hint::black_box;
 
-use bbrf::fit::{Fitter, GeometrySet, Terms};
+use bbrf::fit::{Fitter, GeometrySet, Share, Terms};
 use bbrf::quantity::Reference;
 use bbrf::terms::{Denominator, Distribution};
 use criterion::{Criterion, criterion_group, criterion_main};
+use ndarray::Array2;
+use rayon::prelude::*;
 use scans::{Random, Truth, measure, paper_grid, peer_fit, prepare, random_start};
 
 const SCANS: usize = 2000;
@@ -110,5 +112,80 @@ fn fit(criterion: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, fit);
+const WAVELENGTHS: usize = 101;
+
+/// Spectral scans of the paper's grid: a band of fluorescence over a diffuser that is not flat, 1 % noise. With one weight
+/// for all wavelengths of a geometry, or with weights of their own.
+fn spectra(one_weight: bool) -> Vec<(Array2<f64>, Array2<f64>)> {
+    let grid = paper_grid();
+    let mut random = Random::new(7);
+    (0..20)
+        .map(|_| {
+            let shape = Truth::random(&mut random);
+            let truths: Vec<Truth> = (0..WAVELENGTHS)
+                .map(|k| {
+                    let x = (k as f64 - 40.0) / 12.0;
+                    Truth { albedo: shape.albedo * (0.3 + (-x * x).exp()), ..shape }
+                })
+                .collect();
+            let exact = Array2::from_shape_fn((WAVELENGTHS, grid.len()), |(b, k)| truths[b].evaluate(&grid[k]).0);
+            let sigma = Array2::from_shape_fn(exact.dim(), |(b, k)| {
+                0.01 * if one_weight { exact.column(k).sum() / WAVELENGTHS as f64 } else { exact[(b, k)] }
+            });
+            let values = Array2::from_shape_fn(exact.dim(), |at| exact[at] + sigma[at] * random.normal());
+            (values, sigma)
+        })
+        .collect()
+}
+
+fn spectral(criterion: &mut Criterion) {
+    let set = tables(&paper_grid());
+    let fitter = Fitter::new(&set, Terms { diffuse: true, specular: true });
+    let mut group = criterion.benchmark_group("fit of 272 geometries x 101 wavelengths");
+    for (name, one_weight) in [("weights of their own", false), ("shared weights", true)] {
+        let scans = spectra(one_weight);
+        let mut next = scans.iter().cycle();
+        group.bench_function(name, |bencher| {
+            bencher.iter(|| {
+                let (values, sigma) = next.next().unwrap();
+                black_box(fitter.fit_bands(black_box(values.view()), Some(black_box(sigma.view()))).unwrap())
+            });
+        });
+    }
+    let scans = spectra(true);
+    let mut next = scans.iter().cycle();
+    group.bench_function("shared weights and intensity", |bencher| {
+        bencher.iter(|| {
+            let (values, sigma) = next.next().unwrap();
+            let fitter = fitter.sharing(Share::ShapeAndIntensity);
+            black_box(fitter.fit_bands(black_box(values.view()), Some(black_box(sigma.view()))).unwrap())
+        });
+    });
+    group.finish();
+}
+
+/// Two thousand scans in memory, one thread and all.
+fn batch(criterion: &mut Criterion) {
+    let scans = scans();
+    let set = tables(&paper_grid());
+    let fitter = Fitter::new(&set, Terms { diffuse: true, specular: true });
+    let mut group = criterion.benchmark_group("2,000 scans in memory");
+    group.sample_size(30);
+    for threads in [1, 2] {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        group.bench_function(format!("{threads} threads"), |bencher| {
+            bencher.iter(|| {
+                pool.install(|| {
+                    scans
+                        .par_iter()
+                        .map(|(_, values, sigma)| fitter.fit(values, Some(sigma)).unwrap().chi_square)
+                        .collect::<Vec<f64>>()
+                })
+            });
+        });
+    }
+    group.finish();
+}
+
+criterion_group!(benches, fit, spectral, batch);
 criterion_main!(benches);

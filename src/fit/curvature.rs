@@ -1,25 +1,31 @@
 //! One evaluation of the reduced problem: amplitudes, chi-square, gradient and curvature in ln r and ln(n-1).
+//!
+//! The amplitudes are eliminated one after the other: first the diffuse one of each emission value, then the specular
+//! one, of each emission value or common to all.
 
-use super::geometry_set::GeometrySet;
 use super::linear::{Amplitudes, Gram};
-use super::solve::Band;
-use crate::terms::fresnel;
+use super::products::Products;
 
-/// A point of the reduced problem.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Point {
-    /// \[ln r, ln(n - 1)\].
-    pub(super) log: [f64; 2],
+/// What the emission values of one fit have in common.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Share {
+    /// Roughness and index.
+    #[default]
+    Shape,
+    /// Roughness, index and the amplitude of the specular term.
+    ShapeAndIntensity,
 }
 
-impl Point {
-    pub(super) fn roughness(&self) -> f64 {
-        self.log[0].exp()
-    }
-
-    pub(super) fn index_minus_one(&self) -> f64 {
-        self.log[1].exp()
-    }
+/// An amplitude that is held at a value while the others are fitted: a point of its profile.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(super) enum Held {
+    /// None.
+    #[default]
+    Nothing,
+    /// The diffuse one.
+    Diffuse(f64),
+    /// The specular one.
+    Specular(f64),
 }
 
 /// Half the chi-square's gradient and Gauss-Newton curvature (Kaufman's form), summed over bands.
@@ -30,143 +36,130 @@ pub(super) struct Curvature {
     pub(super) hessian: [[f64; 2]; 2],
     /// Rounding error of the chi-square.
     pub(super) noise: f64,
-    /// True where some band has a specular amplitude.
-    pub(super) sees_specular: bool,
 }
 
-/// Columns of the specular term at a point, without its amplitude: per segment D and dD/d ln r, per sorted point
-/// F G/den and its derivative in ln(n - 1).
-#[derive(Debug, Clone, Default)]
-pub(super) struct Columns {
-    pub(super) d: Vec<f64>,
-    pub(super) d_by_r: Vec<f64>,
-    pub(super) fg: Vec<f64>,
-    pub(super) fg_by_m: Vec<f64>,
-    fresnel: Vec<(f64, f64)>,
-}
-
-impl Columns {
-    pub(super) fn update(&mut self, set: &GeometrySet, point: &Point) {
-        let (roughness, m) = (point.roughness(), point.index_minus_one());
-        self.d.clear();
-        self.d_by_r.clear();
-        for segment in &set.segments {
-            let value = set.distribution.evaluate(&segment.half, roughness);
-            self.d.push(value.value);
-            self.d_by_r.push(value.by_log_roughness);
-        }
-        self.fresnel.clear();
-        self.fresnel.extend(set.halves.iter().map(|half| {
-            let value = fresnel(half, m);
-            (value.value, value.by_index * m)
-        }));
-        self.fg.clear();
-        self.fg_by_m.clear();
-        for (masked, &half) in set.masked.iter().zip(&set.half_of) {
-            let (value, by_m) = self.fresnel[half as usize];
-            self.fg.push(masked * value);
-            self.fg_by_m.push(masked * by_m);
-        }
-    }
-}
-
-/// Inner products with the derivative columns, beside the Gram matrix. r: by ln r; m: by ln(n - 1).
+/// Inner products of the specular column, its derivatives and the data, without their parts along a diffuse column.
 #[derive(Debug, Clone, Copy, Default)]
-struct Derivatives {
-    r1: f64,
-    r2: f64,
-    ry: f64,
-    m1: f64,
-    m2: f64,
-    my: f64,
+struct Left {
+    ss: f64,
+    sr: f64,
+    sm: f64,
+    sy: f64,
     rr: f64,
     rm: f64,
     mm: f64,
+    ry: f64,
+    my: f64,
 }
 
-/// All inner products of one band. D is constant in a segment, so it is taken out of the inner loop.
-fn inner_products(set: &GeometrySet, columns: &Columns, band: &Band) -> (Gram, Derivatives) {
-    let mut gram = band.gram;
-    let mut by = Derivatives::default();
-    for (k, segment) in set.segments.iter().enumerate() {
-        let (d, dr) = (columns.d[k], columns.d_by_r[k]);
-        if d == 0.0 && dr == 0.0 {
-            continue;
+impl Left {
+    /// What the diffuse column leaves; all of it where its amplitude is not free but `diffuse`.
+    #[inline(always)]
+    fn of(p: &Products, free: bool, diffuse: f64) -> Self {
+        let k = if free { p.gram.s11.recip() } else { 0.0 };
+        let fixed = if free { 0.0 } else { diffuse };
+        let (s1, y1) = (p.gram.s12, p.gram.s1y);
+        Self {
+            ss: p.gram.s22 - k * s1 * s1,
+            sr: p.r2 - k * p.r1 * s1,
+            sm: p.m2 - k * p.m1 * s1,
+            sy: p.gram.s2y - k * s1 * y1 - fixed * s1,
+            rr: p.rr - k * p.r1 * p.r1,
+            rm: p.rm - k * p.r1 * p.m1,
+            mm: p.mm - k * p.m1 * p.m1,
+            ry: p.ry - k * p.r1 * y1 - fixed * p.r1,
+            my: p.my - k * p.m1 * y1 - fixed * p.m1,
         }
-        let range = segment.start..segment.end;
-        let (mut ff, mut fm, mut mm) = (0.0, 0.0, 0.0);
-        let (mut f1, mut fy, mut m1, mut my) = (0.0, 0.0, 0.0, 0.0);
-        let points = columns.fg[range.clone()]
-            .iter()
-            .zip(&columns.fg_by_m[range.clone()])
-            .zip(&band.weight[range.clone()])
-            .zip(&band.weighted_diffuse[range.clone()])
-            .zip(&band.weighted_value[range]);
-        for ((((&f, &m), &w), &w1), &wy) in points {
-            let (wf, wm) = (w * f, w * m);
-            ff += wf * f;
-            fm += wf * m;
-            mm += wm * m;
-            f1 += w1 * f;
-            fy += wy * f;
-            m1 += w1 * m;
-            my += wy * m;
-        }
-        gram.s22 += d * d * ff;
-        gram.s12 += d * f1;
-        gram.s2y += d * fy;
-        by.r1 += dr * f1;
-        by.r2 += d * dr * ff;
-        by.ry += dr * fy;
-        by.m1 += d * m1;
-        by.m2 += d * d * fm;
-        by.my += d * my;
-        by.rr += dr * dr * ff;
-        by.rm += d * dr * fm;
-        by.mm += d * d * mm;
     }
-    (gram, by)
+
+    fn add(&mut self, other: &Self) {
+        self.ss += other.ss;
+        self.sr += other.sr;
+        self.sm += other.sm;
+        self.sy += other.sy;
+        self.rr += other.rr;
+        self.rm += other.rm;
+        self.mm += other.mm;
+        self.ry += other.ry;
+        self.my += other.my;
+    }
+
+    /// Adds the curvature that is left beside a specular amplitude, which is free or not.
+    #[inline(always)]
+    fn into_curvature(self, amplitude: f64, free: bool, sum: &mut Curvature) {
+        let (s, square) = (amplitude, amplitude * amplitude);
+        let k = if free { self.ss.recip() } else { 0.0 };
+        let rm = square * (self.rm - k * self.sr * self.sm);
+        sum.hessian[0][0] += square * (self.rr - k * self.sr * self.sr).max(0.0);
+        sum.hessian[1][1] += square * (self.mm - k * self.sm * self.sm).max(0.0);
+        sum.hessian[0][1] += rm;
+        sum.hessian[1][0] += rm;
+        sum.gradient[0] -= s * (self.ry - s * self.sr);
+        sum.gradient[1] -= s * (self.my - s * self.sm);
+    }
 }
 
-/// Evaluates the reduced problem at the point for which `columns` were made.
-pub(super) fn evaluate(set: &GeometrySet, columns: &Columns, bands: &[Band]) -> Curvature {
+/// Evaluates the reduced problem from its inner products.
+#[inline(always)]
+pub(super) fn curvature(bands: &[Products], share: Share, held: Held) -> Curvature {
     let mut sum = Curvature::default();
+    if share == Share::ShapeAndIntensity && bands.len() > 1 {
+        let amplitudes = common_intensity(bands.iter().map(|band| band.gram));
+        let mut left = Left::default();
+        for (band, amplitudes) in bands.iter().zip(&amplitudes) {
+            left.add(&Left::of(band, amplitudes.diffuse > 0.0, 0.0));
+            sum.chi_square += amplitudes.chi_square;
+            sum.noise += band.gram.noise();
+        }
+        let specular = amplitudes.first().map_or(0.0, |amplitudes| amplitudes.specular);
+        if specular > 0.0 {
+            left.into_curvature(specular, true, &mut sum);
+        }
+        return sum;
+    }
     for band in bands {
-        let (gram, by) = inner_products(set, columns, band);
-        let amplitudes = gram.solve();
+        let amplitudes = band.gram.solve_held(held);
         sum.chi_square += amplitudes.chi_square;
-        sum.noise += gram.noise();
+        sum.noise += band.gram.noise();
         if amplitudes.specular > 0.0 {
-            sum.sees_specular = true;
-            add_curvature(&mut sum, &gram, &by, &amplitudes);
+            let diffuse_free = !matches!(held, Held::Diffuse(_)) && amplitudes.diffuse > 0.0;
+            let left = Left::of(band, diffuse_free, amplitudes.diffuse);
+            left.into_curvature(amplitudes.specular, !matches!(held, Held::Specular(_)), &mut sum);
         }
     }
     sum
 }
 
-/// The amplitudes of each band at the point for which `columns` were made.
-pub(super) fn amplitudes(set: &GeometrySet, columns: &Columns, bands: &[Band]) -> Vec<Amplitudes> {
-    bands.iter().map(|band| inner_products(set, columns, band).0.solve()).collect()
+/// The amplitudes of each emission value.
+pub(super) fn amplitudes(grams: &[Gram], share: Share) -> Vec<Amplitudes> {
+    match share {
+        Share::ShapeAndIntensity if grams.len() > 1 => common_intensity(grams.iter().copied()),
+        _ => grams.iter().map(Gram::solve).collect(),
+    }
 }
 
-/// Adds one band: the derivative columns, minus their part in the span of the columns whose amplitudes are free.
-fn add_curvature(sum: &mut Curvature, gram: &Gram, by: &Derivatives, amplitudes: &Amplitudes) {
-    let (a, s) = (amplitudes.diffuse, amplitudes.specular);
-    let (inverse11, inverse12, inverse22) = if a > 0.0 {
-        let determinant = gram.s11 * gram.s22 - gram.s12 * gram.s12;
-        (gram.s22 / determinant, -gram.s12 / determinant, gram.s11 / determinant)
-    } else {
-        (0.0, 0.0, 1.0 / gram.s22)
-    };
-    let inner = |x: (f64, f64), y: (f64, f64)| {
-        inverse11 * x.0 * y.0 + inverse12 * (x.0 * y.1 + x.1 * y.0) + inverse22 * x.1 * y.1
-    };
-    let (r, m) = ((by.r1, by.r2), (by.m1, by.m2));
-    let rm = s * s * (by.rm - inner(r, m));
-    sum.hessian[0][0] += s * s * (by.rr - inner(r, r)).max(0.0);
-    sum.hessian[1][1] += s * s * (by.mm - inner(m, m)).max(0.0);
-    sum.hessian[0][1] += rm;
-    sum.hessian[1][0] += rm;
-    sum.gradient[0] -= s * (by.ry - a * by.r1 - s * by.r2);
-    sum.gradient[1] -= s * (by.my - a * by.m1 - s * by.m2);
+/// Non-negative amplitudes with one specular amplitude for all. A diffuse amplitude that would be negative is held at 0
+/// and the others are solved again; each round holds one more, or ends.
+fn common_intensity(grams: impl Iterator<Item = Gram> + Clone) -> Vec<Amplitudes> {
+    let mut free: Vec<bool> = grams.clone().map(|gram| gram.s11 > 0.0).collect();
+    loop {
+        let (mut ss, mut sy) = (0.0, 0.0);
+        for (gram, &free) in grams.clone().zip(&free) {
+            let k = if free { gram.s12 / gram.s11 } else { 0.0 };
+            ss += gram.s22 - k * gram.s12;
+            sy += gram.s2y - k * gram.s1y;
+        }
+        let specular = if ss > 0.0 { (sy / ss).max(0.0) } else { 0.0 };
+        let diffuse = |gram: &Gram| (gram.s1y - specular * gram.s12) / gram.s11;
+        let mut changed = false;
+        for (gram, free) in grams.clone().zip(&mut free) {
+            if *free && diffuse(&gram) < 0.0 {
+                (*free, changed) = (false, true);
+            }
+        }
+        if !changed {
+            let of = |(gram, free): (Gram, &bool)| gram.amplitudes(if *free { diffuse(&gram) } else { 0.0 }, specular);
+            return grams.zip(&free).map(of).collect();
+        }
+    }
 }

@@ -2,11 +2,12 @@
 
 use ndarray::Array2;
 
+use super::samples::LANES;
 use crate::quantity::{Geometry, HalfAngles, Reference};
 use crate::terms::{Denominator, Distribution, Undefined, diffuse_factor, fresnel, specular_factor};
 
 /// Roughness nodes of the starting grid.
-const ROUGHNESS_NODES: usize = 12;
+pub(super) const ROUGHNESS_NODES: usize = 12;
 /// Nodes of n - 1 in the starting grid.
 pub(super) const INDEX_NODES: [f64; 3] = [0.15, 0.424_264_068_711_928_5, 1.2];
 /// A lobe narrower than the smallest half-vector angle over this is seen by no other point of the grid.
@@ -46,9 +47,9 @@ pub struct GeometrySet {
     /// Input indices of geometries where a term is undefined; they take no part.
     undefined: Vec<usize>,
     inputs: usize,
-    /// Angular factor of a diffuse term of amplitude 1, per sorted point.
+    /// Angular factor of a diffuse term of amplitude 1, per sorted and padded point; 0 in the padding.
     pub(super) diffuse: Vec<f64>,
-    /// G over denominator and reference, per sorted point.
+    /// G over denominator and reference, per sorted and padded point; 0 in the padding.
     pub(super) masked: Vec<f64>,
     pub(super) segments: Vec<Segment>,
     /// Distinct angles between L and Q, and which one each sorted point has.
@@ -131,7 +132,13 @@ impl GeometrySet {
     fn from_points(points: &[Point], undefined: Vec<usize>, distribution: Distribution) -> Self {
         let segments = segments(points);
         let (halves, half_of) = distinct_halves(points);
-        let masked: Vec<f64> = points.iter().map(|point| point.masked).collect();
+        let mut masked: Vec<f64> = points.iter().map(|point| point.masked).collect();
+        let mut diffuse: Vec<f64> = points.iter().map(|point| point.diffuse).collect();
+        let mut half_of = half_of;
+        let padded = points.len().next_multiple_of(LANES);
+        masked.resize(padded, 0.0);
+        diffuse.resize(padded, 0.0);
+        half_of.resize(padded, 0);
         let smallest_angle =
             segments.iter().map(|segment| segment.half.phi).find(|&phi| phi > SAME_ANGLE).unwrap_or(f64::INFINITY);
         let width = |half_width: f64| distribution.roughness_from_half_width(half_width);
@@ -141,7 +148,7 @@ impl GeometrySet {
             order: points.iter().map(|point| point.input).collect(),
             inputs: points.len() + undefined.len(),
             undefined,
-            diffuse: points.iter().map(|point| point.diffuse).collect(),
+            diffuse,
             masked,
             segments,
             halves,
@@ -156,6 +163,11 @@ impl GeometrySet {
     #[must_use]
     pub fn len(&self) -> usize {
         self.inputs
+    }
+
+    /// The number of sorted points where every term is defined, padded to whole lanes.
+    pub(super) fn points(&self) -> usize {
+        self.diffuse.len()
     }
 
     /// True when no geometry was given.

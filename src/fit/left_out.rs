@@ -48,6 +48,14 @@ impl LeftOut {
         } += 1;
     }
 
+    pub(super) fn add_all(&mut self, other: &Self) {
+        let Self { no_value, undefined_geometry, zero_sigma, unknown_sigma } = other;
+        self.no_value += no_value;
+        self.undefined_geometry += undefined_geometry;
+        self.zero_sigma += zero_sigma;
+        self.unknown_sigma += unknown_sigma;
+    }
+
     /// One phrase per reason that applies.
     pub(super) fn reasons(&self) -> Vec<String> {
         [

@@ -1,5 +1,7 @@
 //! The linear part: non-negative amplitudes of at most two columns, from their Gram matrix.
 
+use super::curvature::Held;
+
 /// Inner products of the diffuse column (1), the specular column (2) and the data (y), each weighted with 1/sigma^2.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Gram {
@@ -20,6 +22,7 @@ pub(super) struct Amplitudes {
 }
 
 impl Gram {
+    #[inline(always)]
     /// The non-negative amplitudes of least chi-square. A column without weight gets 0.
     pub(super) fn solve(&self) -> Amplitudes {
         let determinant = self.s11 * self.s22 - self.s12 * self.s12;
@@ -37,7 +40,19 @@ impl Gram {
         if second.chi_square < first.chi_square { second } else { first }
     }
 
-    fn amplitudes(&self, diffuse: f64, specular: f64) -> Amplitudes {
+    /// The same with one amplitude held at a value.
+    #[inline(always)]
+    pub(super) fn solve_held(&self, held: Held) -> Amplitudes {
+        let alone = |sy: f64, s: f64| if s > 0.0 { (sy / s).max(0.0) } else { 0.0 };
+        match held {
+            Held::Nothing => self.solve(),
+            Held::Diffuse(diffuse) => self.amplitudes(diffuse, alone(self.s2y - diffuse * self.s12, self.s22)),
+            Held::Specular(specular) => self.amplitudes(alone(self.s1y - specular * self.s12, self.s11), specular),
+        }
+    }
+
+    #[inline(always)]
+    pub(super) fn amplitudes(&self, diffuse: f64, specular: f64) -> Amplitudes {
         let linear = diffuse * self.s1y + specular * self.s2y;
         let quadratic =
             diffuse * diffuse * self.s11 + 2.0 * diffuse * specular * self.s12 + specular * specular * self.s22;

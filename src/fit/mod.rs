@@ -12,6 +12,7 @@
 //! in the set, sorted by half-vector angle, so that an evaluation needs one D per distinct angle and one F per distinct
 //! half angle.
 
+mod columns;
 mod curvature;
 mod geometry_set;
 mod identifiability;
@@ -20,13 +21,20 @@ mod linear;
 mod magnitude;
 mod measurement;
 mod outcome;
+mod polish;
+mod products;
+mod profile;
+mod samples;
 mod separability;
 mod solve;
+mod starts;
 mod statistics;
 
+pub use curvature::Share;
 pub use geometry_set::{GeometrySet, SetError};
 pub use left_out::LeftOut;
 pub use measurement::{FitError, FitOptions, fit_measurement};
 pub use outcome::{BandFit, Fit, Stop};
+pub use profile::{Interval, Intervals};
 pub use separability::{NotSeparable, separability};
 pub use solve::{DataError, Fitter, Terms};

@@ -69,6 +69,10 @@ pub struct Fit {
     pub specular_gain: f64,
     /// Standard uncertainties of ln(roughness) and ln(n - 1); NaN where the data cannot tell.
     pub log_sigma: [f64; 2],
+    /// Singular values of the common columns (specular amplitude where it is shared, roughness, index), each scaled to
+    /// unit length, beside all other parameters: near 0 is a combination that the data cannot tell. Empty without a
+    /// specular term.
+    pub singular_values: Vec<f64>,
     /// Why the fit stopped.
     pub stop: Stop,
     /// True for roughness and index where the data ask for a value beyond the searched box: the number is the edge, and

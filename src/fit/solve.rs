@@ -1,22 +1,19 @@
-//! The fit itself: starting grid, polish, result.
+//! The fit itself: starts, polish, result.
 
 use ndarray::{ArrayView1, ArrayView2, Axis};
 
-use super::curvature::{Columns, Curvature, Point, amplitudes, evaluate};
-use super::geometry_set::{GeometrySet, INDEX_BOX, INDEX_NODES};
-use super::left_out::{LeftOut, reason};
+use super::columns::{Columns, Point};
+use super::curvature::{Held, Share, amplitudes};
+use super::geometry_set::{GeometrySet, INDEX_BOX};
+use super::left_out::LeftOut;
 use super::linear::{Amplitudes, Gram};
 use super::magnitude;
 use super::outcome::{BandFit, Fit, Stop};
+use super::polish::{Fixed, Polished, Reduced};
+use super::samples::Samples;
+use super::starts::starts;
 use super::statistics;
 
-/// Stop when the predicted decrease of chi-square is below this share of chi-square per degree of freedom: the
-/// minimum is then 1e-4 standard uncertainties away.
-const TOLERANCE: f64 = 1e-8;
-/// Most evaluations of one polish; five are usual.
-const MOST_EVALUATIONS: usize = 60;
-/// Longest step in ln r and ln(n - 1).
-const STEP_CAPS: [f64; 2] = [0.7, 1.5];
 /// A specular term must lower chi-square by this much to be reported: of two thousand pure diffusers the luckiest
 /// noise gained 13.
 pub(super) const SEEN: f64 = 15.0;
@@ -67,50 +64,67 @@ pub enum DataError {
     NoTerm,
 }
 
-/// One emission value's data in the order of the set, weighted.
-#[derive(Debug, Clone)]
-pub(super) struct Band {
-    /// (smallest sigma / sigma)^2; 0 for a value that is not used.
-    pub(super) weight: Vec<f64>,
-    pub(super) weighted_diffuse: Vec<f64>,
-    pub(super) weighted_value: Vec<f64>,
-    pub(super) value: Vec<f64>,
-    /// Inner products that do not depend on the specular term.
-    pub(super) gram: Gram,
-    pub(super) count: usize,
-    left_out: LeftOut,
-}
-
 /// Fits scans over one set of geometries.
 #[derive(Debug, Clone, Copy)]
 pub struct Fitter<'a> {
-    set: &'a GeometrySet,
+    pub(super) set: &'a GeometrySet,
     terms: Terms,
+    share: Share,
+    /// Bounds of ln r and ln(n - 1).
+    bounds: [(f64, f64); 2],
 }
 
-/// A polished start.
-struct Polished {
-    point: Point,
-    curvature: Curvature,
-    stop: Stop,
-    /// Which of (roughness, index) are held on the edge of the box.
-    held: [bool; 2],
-    evaluations: usize,
+/// A whole fit, as what is compiled for several kinds of processor.
+struct Whole<'a, 'b> {
+    fitter: Fitter<'a>,
+    values: ArrayView2<'b, f64>,
+    sigma: Option<ArrayView2<'b, f64>>,
 }
 
-impl Polished {
-    /// A polish that found no step to take with these parameters free.
-    fn ended(point: Point, curvature: Curvature, free: [bool; 2], evaluations: usize) -> Self {
-        let stop = if free == [true, true] { Stop::Converged } else { Stop::AtBound };
-        Self { point, curvature, stop, held: free.map(|free| !free), evaluations }
+impl pulp::WithSimd for Whole<'_, '_> {
+    type Output = Result<Fit, DataError>;
+
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, _: S) -> Self::Output {
+        let Self { fitter, values, sigma } = self;
+        Ok(fitter.solve(&fitter.prepare(values, sigma)?))
     }
+}
+
+/// The data of one fit, ready, with what is known of them.
+#[derive(Debug)]
+pub(super) struct Prepared {
+    pub(super) samples: Samples,
+    /// 1 over the variance that weight 1 stands for; `None` where the residuals decide.
+    pub(super) unit: Option<f64>,
+    pub(super) freedom: f64,
+    pub(super) left_out: LeftOut,
 }
 
 impl<'a> Fitter<'a> {
     /// A fitter of these terms over these geometries.
     #[must_use]
     pub fn new(set: &'a GeometrySet, terms: Terms) -> Self {
-        Self { set, terms }
+        let log = |(low, high): (f64, f64)| (low.ln(), high.ln());
+        Self { set, terms, share: Share::default(), bounds: [log(set.roughness_box), log(INDEX_BOX)] }
+    }
+
+    /// The same with something else in common between emission values.
+    #[must_use]
+    pub fn sharing(self, share: Share) -> Self {
+        Self { share, ..self }
+    }
+
+    /// The same within a narrower box: bounds (low, high) of the roughness in the unit of the distribution, and of n - 1.
+    /// What lies beyond the box that can be searched at all is cut off.
+    #[must_use]
+    pub fn within(self, roughness: (f64, f64), index_minus_one: (f64, f64)) -> Self {
+        let narrowed = |(low, high): (f64, f64), asked: (f64, f64)| {
+            let (from, to) = (asked.0.ln().max(low), asked.1.ln().min(high));
+            (from.min(high), to.max(low))
+        };
+        let bounds = [narrowed(self.bounds[0], roughness), narrowed(self.bounds[1], index_minus_one)];
+        Self { bounds, ..self }
     }
 
     /// Fits one scan: N values, with their standard uncertainties if known. Values that are not finite or whose
@@ -124,11 +138,23 @@ impl<'a> Fitter<'a> {
         self.fit_bands(one_row(values), sigma.map(one_row))
     }
 
-    /// Fits several emission values \[B, N\] with a common roughness and index, and amplitudes of their own.
+    /// Fits several emission values \[B, N\] with a common roughness and index, and amplitudes of their own (or a common
+    /// specular one: [`Fitter::sharing`]). Uncertainties that are the same for all emission values make it faster.
     ///
     /// # Errors
     /// As [`Fitter::fit`].
     pub fn fit_bands(&self, values: ArrayView2<f64>, sigma: Option<ArrayView2<f64>>) -> Result<Fit, DataError> {
+        // The sums below are compiled once more for processors with wider vectors; their order is the same in each.
+        pulp::Arch::new().dispatch(Whole { fitter: *self, values, sigma })
+    }
+
+    /// Checks, sorts and weights the data.
+    #[inline(always)]
+    pub(super) fn prepare(
+        &self,
+        values: ArrayView2<f64>,
+        sigma: Option<ArrayView2<f64>>,
+    ) -> Result<Prepared, DataError> {
         if !self.terms.diffuse && !self.terms.specular {
             return Err(DataError::NoTerm);
         }
@@ -138,302 +164,166 @@ impl<'a> Fitter<'a> {
                 return Err(DataError::Length { found, expected });
             }
         }
-        magnitude::check(values, sigma)?;
-        let unit = smallest_sigma(sigma).powi(-2);
-        let bands: Vec<Band> = (0..values.nrows()).map(|b| self.band(values, sigma, b, unit.sqrt())).collect();
-        let usable: usize = bands.iter().map(|band| band.count).sum();
-        let left_out = self.left_out(&bands);
-        let parameters = self.parameters(bands.len());
-        if usable <= parameters || bands.is_empty() {
+        let smallest = magnitude::check(values, sigma)?;
+        let samples = Samples::new(self.set, self.terms.diffuse, values, sigma, smallest.recip());
+        let mut left_out = samples.left_out;
+        left_out.undefined_geometry = self.set.undefined().len() * samples.bands();
+        let (usable, parameters) = (samples.used(), self.parameters(samples.bands()));
+        if usable <= parameters || samples.bands() == 0 {
             return Err(DataError::TooFew { usable, parameters, left_out });
         }
-        let unit = sigma.is_some().then_some(unit);
-        Ok(self.solve(&bands, unit, (usable - parameters) as f64, left_out))
+        let unit = sigma.is_some().then(|| smallest.powi(-2));
+        Ok(Prepared { samples, unit, freedom: (usable - parameters) as f64, left_out })
     }
 
-    fn parameters(&self, bands: usize) -> usize {
-        let linear = usize::from(self.terms.diffuse) + usize::from(self.terms.specular);
-        linear * bands + 2 * usize::from(self.terms.specular)
+    pub(super) fn has_diffuse(&self) -> bool {
+        self.terms.diffuse
     }
 
-    /// What takes no part, summed over the emission values.
-    fn left_out(&self, bands: &[Band]) -> LeftOut {
-        let mut sum = LeftOut { undefined_geometry: self.set.undefined().len() * bands.len(), ..LeftOut::default() };
-        for LeftOut { no_value, undefined_geometry, zero_sigma, unknown_sigma } in
-            bands.iter().map(|band| band.left_out)
-        {
-            sum.no_value += no_value;
-            sum.undefined_geometry += undefined_geometry;
-            sum.zero_sigma += zero_sigma;
-            sum.unknown_sigma += unknown_sigma;
-        }
-        sum
-    }
-
-    /// Sorts and weights one emission value; `root_unit` is 1 over the smallest sigma, so that no weight overflows.
-    fn band(&self, values: ArrayView2<f64>, sigma: Option<ArrayView2<f64>>, b: usize, root_unit: f64) -> Band {
-        let n = self.set.order.len();
-        let mut band = Band {
-            weight: Vec::with_capacity(n),
-            weighted_diffuse: Vec::with_capacity(n),
-            weighted_value: Vec::with_capacity(n),
-            value: Vec::with_capacity(n),
-            gram: Gram::default(),
-            count: 0,
-            left_out: LeftOut::default(),
+    pub(super) fn parameters(&self, bands: usize) -> usize {
+        let diffuse = usize::from(self.terms.diffuse) * bands;
+        let specular = match self.share {
+            Share::Shape => bands + 2,
+            Share::ShapeAndIntensity => 3,
         };
-        for (&input, &diffuse) in self.set.order.iter().zip(&self.set.diffuse) {
-            let value = values[(b, input)];
-            let relative = sigma.map_or(1.0, |sigma| root_unit * sigma[(b, input)]);
-            let reason = reason(value, sigma.map(|sigma| sigma[(b, input)]));
-            let used = reason.is_none();
-            reason.into_iter().for_each(|reason| band.left_out.add(reason));
-            let weight = if used { (relative * relative).recip() } else { 0.0 };
-            let value = if used { value } else { 0.0 };
-            let diffuse = if self.terms.diffuse { diffuse } else { 0.0 };
-            band.gram.s11 += weight * diffuse * diffuse;
-            band.gram.s1y += weight * diffuse * value;
-            band.gram.syy += weight * value * value;
-            band.weight.push(weight);
-            band.weighted_diffuse.push(weight * diffuse);
-            band.weighted_value.push(weight * value);
-            band.value.push(value);
-            band.count += usize::from(used);
-        }
-        band
+        diffuse + if self.terms.specular { specular } else { 0 }
     }
 
-    fn solve(&self, bands: &[Band], unit: Option<f64>, freedom: f64, left_out: LeftOut) -> Fit {
-        let diffuse_only: f64 = bands.iter().map(|band| band.gram.solve().chi_square).sum();
-        let polished = if self.terms.specular { self.specular(bands, freedom) } else { None };
+    /// The reduced problem of prepared data.
+    #[inline(always)]
+    pub(super) fn reduced<'b>(&'b self, data: &'b Prepared) -> Reduced<'b> {
+        Reduced {
+            set: self.set,
+            samples: &data.samples,
+            share: self.share,
+            bounds: self.bounds,
+            freedom: data.freedom,
+            columns: Columns::default(),
+            products: Vec::with_capacity(data.samples.bands()),
+            evaluations: 0,
+        }
+    }
+
+    #[inline(always)]
+    pub(super) fn solve(&self, data: &Prepared) -> Fit {
+        let diffuse_only: f64 = data.samples.gram.iter().map(|gram| gram.solve().chi_square).sum();
+        let mut reduced = self.reduced(data);
+        let polished = if self.terms.specular { self.specular(data, &mut reduced) } else { None };
         let Some(polished) = polished else {
-            return self.without_specular(bands, unit, freedom, left_out, 0.0, 0);
+            return self.without_specular(data, 0.0, reduced.evaluations);
         };
         let chi_square = polished.curvature.chi_square.max(polished.curvature.noise);
-        let scale = unit.unwrap_or(freedom / chi_square);
+        let scale = data.unit.unwrap_or(data.freedom / chi_square);
         let gain = scale * (diffuse_only - polished.curvature.chi_square);
         let seen = gain > SEEN && diffuse_only - polished.curvature.chi_square > polished.curvature.noise;
         if self.terms.diffuse && !seen {
-            return self.without_specular(bands, unit, freedom, left_out, gain, polished.evaluations);
+            return self.without_specular(data, gain, reduced.evaluations);
         }
-        let mut columns = Columns::default();
-        columns.update(self.set, &polished.point);
-        let amplitudes = amplitudes(self.set, &columns, bands);
+        self.at(data, &mut reduced, &polished, gain)
+    }
+
+    /// The fit at a polished point, with its statistics.
+    #[inline(always)]
+    pub(super) fn at(&self, data: &Prepared, reduced: &mut Reduced<'_>, polished: &Polished, gain: f64) -> Fit {
+        let evaluations = reduced.evaluations;
+        reduced.evaluate(&polished.point, Held::Nothing);
+        let grams: Vec<Gram> = reduced.products.iter().map(|products| products.gram).collect();
         let mut fit = Fit {
             roughness: polished.point.roughness(),
             index_minus_one: polished.point.index_minus_one(),
-            bands: band_fits(bands, &amplitudes),
+            bands: band_fits(&data.samples, &amplitudes(&grams, self.share)),
             chi_square: 0.0,
-            degrees_of_freedom: freedom,
+            degrees_of_freedom: data.freedom,
             specular_gain: gain,
             log_sigma: [f64::NAN; 2],
+            singular_values: Vec::new(),
             stop: polished.stop,
-            at_bound: polished.held,
-            evaluations: polished.evaluations,
-            left_out,
+            at_bound: polished.on_edge,
+            evaluations,
+            left_out: data.left_out,
         };
-        statistics::complete(self.set, bands, Some(&columns), unit, &mut fit);
+        statistics::complete(reduced, data.unit, &mut fit);
         fit
     }
 
-    fn without_specular(
-        &self,
-        bands: &[Band],
-        unit: Option<f64>,
-        freedom: f64,
-        left_out: LeftOut,
-        gain: f64,
-        evaluations: usize,
-    ) -> Fit {
-        let amplitudes: Vec<Amplitudes> = bands.iter().map(|band| band.gram.solve()).collect();
-        let given_up = if self.terms.specular { (bands.len() + 2) as f64 } else { 0.0 };
+    fn without_specular(&self, data: &Prepared, gain: f64, evaluations: usize) -> Fit {
+        let amplitudes: Vec<Amplitudes> = data.samples.gram.iter().map(Gram::solve).collect();
+        let bands = data.samples.bands();
+        let given_up = self.parameters(bands) - usize::from(self.terms.diffuse) * bands;
         let mut fit = Fit {
             roughness: f64::NAN,
             index_minus_one: f64::NAN,
-            bands: band_fits(bands, &amplitudes),
+            bands: band_fits(&data.samples, &amplitudes),
             chi_square: 0.0,
-            degrees_of_freedom: freedom + given_up,
+            degrees_of_freedom: data.freedom + given_up as f64,
             specular_gain: gain,
             log_sigma: [f64::NAN; 2],
+            singular_values: Vec::new(),
             stop: Stop::Linear,
             at_bound: [false; 2],
             evaluations,
-            left_out,
+            left_out: data.left_out,
         };
-        statistics::complete(self.set, bands, None, unit, &mut fit);
+        statistics::complete_linear(self.set, &data.samples, data.unit, &mut fit);
         fit
     }
 
     /// The best of the polished starts; `None` when no start has a specular amplitude.
-    fn specular(&self, bands: &[Band], freedom: f64) -> Option<Polished> {
-        let summed;
-        let start = if let [band] = bands {
-            band
-        } else {
-            summed = self.summed(bands);
-            &summed
+    #[inline(always)]
+    fn specular(&self, data: &Prepared, reduced: &mut Reduced<'_>) -> Option<Polished> {
+        let starts = match data.samples.bands() {
+            1 => starts(self.set, &data.samples).map(|start| start.map(|start| self.clamped(start))),
+            _ => self.common_starts(data),
         };
-        let mut columns = Columns::default();
         let mut best: Option<Polished> = None;
-        for point in self.starts(start).into_iter().flatten() {
-            let polished = self.polish(bands, point, freedom, &mut columns);
-            let evaluations = polished.evaluations + best.as_ref().map_or(0, |best| best.evaluations);
+        for start in starts.into_iter().flatten() {
+            let Some(polished) = reduced.polish(start, Fixed::default(), best.as_ref()) else { continue };
             let better = best.as_ref().is_none_or(|b| polished.curvature.chi_square < b.curvature.chi_square);
             best = if better { Some(polished) } else { best };
-            best.iter_mut().for_each(|best| best.evaluations = evaluations);
         }
         best
     }
 
-    /// The sum over emission values obeys the same model with the same roughness and index: one grid serves all.
-    fn summed(&self, bands: &[Band]) -> Band {
-        let mut sum = bands[0].clone();
-        let n = sum.weight.len();
-        let mut gram = Gram::default();
-        for point in 0..n {
-            let used = bands.iter().filter(|band| band.weight[point] > 0.0);
-            let complete = used.clone().count() == bands.len();
-            let variance: f64 = used.clone().map(|band| band.weight[point].recip()).sum();
-            let value: f64 = used.map(|band| band.value[point]).sum();
-            let weight = if complete { variance.recip() } else { 0.0 };
-            let diffuse = if self.terms.diffuse { self.set.diffuse[point] } else { 0.0 };
-            sum.weight[point] = weight;
-            sum.weighted_diffuse[point] = weight * diffuse;
-            sum.weighted_value[point] = weight * value;
-            sum.value[point] = value;
-            gram.s11 += weight * diffuse * diffuse;
-            gram.s1y += weight * diffuse * value;
-            gram.syy += weight * value * value;
+    /// Starts of several emission values: the minima of their sum, the second where it is nearly as good.
+    #[inline(always)]
+    fn common_starts(&self, data: &Prepared) -> [Option<Point>; 2] {
+        let summed = data.samples.summed(self.set, self.terms.diffuse);
+        let freedom = (summed.used() as f64 - self.parameters(1) as f64).max(1.0);
+        let alone = Prepared { samples: summed, unit: None, freedom, left_out: LeftOut::default() };
+        let mut reduced = self.reduced(&alone);
+        let [first, second] = starts(self.set, &alone.samples).map(|start| start.map(|start| self.clamped(start)));
+        let first = first.and_then(|start| reduced.polish(start, Fixed::default(), None));
+        let second = second.and_then(|start| reduced.polish(start, Fixed::default(), first.as_ref()));
+        let chi_square = |polished: &Option<Polished>| polished.map_or(f64::INFINITY, |p| p.curvature.chi_square);
+        let best = chi_square(&first).min(chi_square(&second));
+        // One unit of chi-square per degree of freedom is one unit of chi-square of data that fit.
+        let near = |polished: Option<Polished>| {
+            polished.filter(|p| p.curvature.chi_square - best <= SEEN * best / freedom).map(|p| p.point)
+        };
+        let [first, second] = [near(first), near(second)];
+        if first.is_some() || second.is_some() {
+            return [first, second];
         }
-        sum.gram = gram;
-        sum
+        // The sum shows no specular term, or lacks every point, because each is missing somewhere.
+        starts(self.set, &data.samples).map(|start| start.map(|start| self.clamped(start)))
     }
 
-    /// The best node of the grid and the best with another roughness, among those with a specular amplitude.
-    fn starts(&self, band: &Band) -> [Option<Point>; 2] {
-        let grid = &self.set.grid;
-        let nodes = grid.roughness.len();
-        let mut chosen = vec![(f64::INFINITY, 0_usize); nodes];
-        for index_node in 0..INDEX_NODES.len() {
-            let sums = self.segment_sums(band, index_node);
-            for (node, best) in chosen.iter_mut().enumerate() {
-                let mut gram = band.gram;
-                for (&d, &[ff, f1, fy]) in grid.distribution.row(node).iter().zip(&sums) {
-                    gram.s22 += d * d * ff;
-                    gram.s12 += d * f1;
-                    gram.s2y += d * fy;
-                }
-                let amplitudes = gram.solve();
-                if amplitudes.specular > 0.0 && amplitudes.chi_square < best.0 {
-                    *best = (amplitudes.chi_square, index_node);
-                }
-            }
-        }
-        let mut order: Vec<usize> = (0..nodes).collect();
-        order.sort_by(|&a, &b| chosen[a].0.total_cmp(&chosen[b].0));
-        [0, 1].map(|rank| {
-            let node = order[rank];
-            let (chi_square, index_node) = chosen[node];
-            chi_square.is_finite().then(|| Point { log: [grid.roughness[node].ln(), INDEX_NODES[index_node].ln()] })
-        })
-    }
-
-    /// Per segment the inner products of F G/den at an index node with itself, the diffuse column and the data.
-    fn segment_sums(&self, band: &Band, index_node: usize) -> Vec<[f64; 3]> {
-        let specular = self.set.grid.specular.row(index_node);
-        self.set
-            .segments
-            .iter()
-            .map(|segment| {
-                let mut sums = [0.0; 3];
-                for point in segment.start..segment.end {
-                    let f = specular[point];
-                    sums[0] += band.weight[point] * f * f;
-                    sums[1] += band.weighted_diffuse[point] * f;
-                    sums[2] += band.weighted_value[point] * f;
-                }
-                sums
-            })
-            .collect()
-    }
-
-    /// Levenberg-Marquardt on (ln r, ln(n - 1)) within the box, with projected gradient.
-    fn polish(&self, bands: &[Band], start: Point, freedom: f64, columns: &mut Columns) -> Polished {
-        let (low, high) = self.set.roughness_box;
-        let bounds = [(low.ln(), high.ln()), (INDEX_BOX.0.ln(), INDEX_BOX.1.ln())];
-        let mut point = start;
-        columns.update(self.set, &point);
-        let mut current = evaluate(self.set, columns, bands);
-        let mut damping = 1e-4;
-        for evaluations in 1..MOST_EVALUATIONS {
-            let free = free_parameters(&point, &current, &bounds);
-            let step = damped_step(&current, free, damping);
-            let undamped = damped_step(&current, free, 0.0);
-            let threshold = (TOLERANCE * current.chi_square / freedom).max(current.noise);
-            let decrease = -(current.gradient[0] * undamped[0] + current.gradient[1] * undamped[1]);
-            if decrease.is_nan() || decrease <= threshold {
-                return Polished::ended(point, current, free, evaluations);
-            }
-            let trial = Point {
-                log: std::array::from_fn(|k| {
-                    (point.log[k] + step[k].clamp(-STEP_CAPS[k], STEP_CAPS[k])).clamp(bounds[k].0, bounds[k].1)
-                }),
-            };
-            columns.update(self.set, &trial);
-            let next = evaluate(self.set, columns, bands);
-            if next.chi_square <= current.chi_square {
-                point = trial;
-                current = next;
-                damping = (damping * 0.1).max(1e-12);
-            } else if current.chi_square - next.chi_square > -threshold {
-                // No decrease left that rounding would let through.
-                return Polished::ended(point, current, free, evaluations + 1);
-            } else {
-                damping = (damping * 10.0).max(1e-3);
-            }
-        }
-        let held = free_parameters(&point, &current, &bounds).map(|free| !free);
-        Polished { point, curvature: current, stop: Stop::EvaluationLimit, held, evaluations: MOST_EVALUATIONS }
+    fn clamped(&self, start: Point) -> Point {
+        Point { log: [0, 1].map(|k| start.log[k].clamp(self.bounds[k].0, self.bounds[k].1)) }
     }
 }
 
-fn smallest_sigma(sigma: Option<ArrayView2<f64>>) -> f64 {
-    sigma.map_or(1.0, |sigma| sigma.iter().copied().filter(|s| *s > 0.0 && s.is_finite()).fold(f64::INFINITY, f64::min))
-}
-
-fn band_fits(bands: &[Band], amplitudes: &[Amplitudes]) -> Vec<BandFit> {
-    bands
+fn band_fits(samples: &Samples, amplitudes: &[Amplitudes]) -> Vec<BandFit> {
+    samples
+        .count
         .iter()
         .zip(amplitudes)
-        .map(|(band, amplitudes)| BandFit {
+        .map(|(&count, amplitudes)| BandFit {
             diffuse: amplitudes.diffuse,
             intensity: amplitudes.specular,
-            chi_square: 0.0,
-            count: band.count,
+            chi_square: amplitudes.chi_square,
+            count,
             covariance: [[0.0; 4]; 4],
         })
         .collect()
-}
-
-/// A parameter on its bound whose gradient points outwards is held.
-fn free_parameters(point: &Point, curvature: &Curvature, bounds: &[(f64, f64); 2]) -> [bool; 2] {
-    std::array::from_fn(|k| {
-        let (low, high) = bounds[k];
-        let outwards = (point.log[k] <= low && curvature.gradient[k] > 0.0)
-            || (point.log[k] >= high && curvature.gradient[k] < 0.0);
-        !outwards
-    })
-}
-
-/// The Gauss-Newton step with Marquardt's damping; a held parameter does not move, nor does one without curvature.
-fn damped_step(curvature: &Curvature, free: [bool; 2], damping: f64) -> [f64; 2] {
-    let h = &curvature.hessian;
-    let g = &curvature.gradient;
-    let (h0, h1) = (h[0][0] * (1.0 + damping), h[1][1] * (1.0 + damping));
-    let alone = |h: f64, g: f64, free: bool| if free && h > 0.0 { -g / h } else { 0.0 };
-    let determinant = h0 * h1 - h[0][1] * h[0][1];
-    if free == [true, true] && determinant > 1e-14 * h0 * h1 {
-        return [(h[0][1] * g[1] - h1 * g[0]) / determinant, (h[0][1] * g[0] - h0 * g[1]) / determinant];
-    }
-    [alone(h0, g[0], free[0]), alone(h1, g[1], free[1])]
 }

@@ -1,42 +1,91 @@
 //! Covariance of a fit, from the singular values of its Jacobian at the solution.
 //!
-//! Each emission value has two amplitudes of its own; roughness and index are common. A QR decomposition of each
-//! emission value's four weighted columns separates them: what is left of the two common columns after the amplitudes
-//! is stacked and its singular values decide what the data can tell. Why no R^2: a non-linear weighted model has none;
+//! Each emission value has amplitudes of its own; roughness and index, and the specular amplitude where it is shared, are
+//! common. A triangular factor of each emission value's four weighted columns separates them: what is left of the common
+//! columns after its own amplitudes is stacked, and its singular values decide what the data can tell. Why no R^2: a non-linear weighted model has none;
 //! reduced chi-square and the residual map answer the question it is asked.
 
-use nalgebra::{DMatrix, Matrix2};
+use nalgebra::{DMatrix, DVector};
 
-use super::curvature::Columns;
+use super::curvature::Share;
 use super::geometry_set::GeometrySet;
 use super::outcome::Fit;
-use super::solve::Band;
+use super::polish::Reduced;
+use super::products::Products;
+use super::samples::{Sample, Samples, dot};
 
 /// A direction of the common parameters whose column keeps less than this share of its length beside all others
 /// cannot be told from them.
-const SINGULAR: f64 = 1e-8;
+pub(super) const SINGULAR: f64 = 1e-8;
+/// A column of which less than this share (of its square) is left beside the others is formed from the data themselves: its
+/// inner products have lost too many digits.
+const CANCELLED: f64 = 1e-5;
 
 /// Upper triangular factor of the columns (diffuse, specular, by ln r, by ln(n - 1)) of one emission value.
 type Triangle = [[f64; 4]; 4];
 
-/// Fills chi-square and covariance of a fit whose amplitudes and point are set. `unit` is 1 over the variance that
-/// weight 1 stands for; `None` when it is to be taken from the residuals.
-pub(super) fn complete(set: &GeometrySet, bands: &[Band], columns: Option<&Columns>, unit: Option<f64>, fit: &mut Fit) {
-    let triangles: Vec<(Triangle, [f64; 4])> = bands
-        .iter()
-        .enumerate()
-        .map(|(b, band)| {
-            let mut jacobian = jacobian(set, band, columns, fit.bands[b].intensity);
-            fit.bands[b].chi_square = residual_square(&jacobian, band, fit.bands[b].diffuse, fit.bands[b].intensity);
-            triangle(&mut jacobian)
-        })
-        .collect();
+/// What is common to all emission values: the last columns of each triangle.
+struct Common {
+    /// How many columns are the emission value's own.
+    own: usize,
+    /// Covariance of the others for weight 1; NaN for a parameter with a part in a direction that cannot be told.
+    covariance: [[f64; 3]; 3],
+    /// Singular values of the columns, scaled to unit length, largest first.
+    singular: Vec<f64>,
+}
+
+/// Fills chi-square and covariance of a fit whose amplitudes and point are set, and for whose point `reduced` was
+/// evaluated last. `unit` is 1 over the variance that weight 1 stands for; `None` when it is to be taken from the
+/// residuals.
+#[inline(always)]
+pub(super) fn complete(reduced: &Reduced<'_>, unit: Option<f64>, fit: &mut Fit) {
+    let mut triangles = Vec::with_capacity(fit.bands.len());
+    for (b, band) in fit.bands.iter_mut().enumerate() {
+        let products = &reduced.products[b];
+        let gram = gram(products, band.intensity);
+        // A chi-square formed from sums is no better than their rounding.
+        let exact = band.chi_square > CANCELLED * products.gram.syy;
+        match cholesky(&gram).filter(|_| exact) {
+            Some(triangle) => triangles.push(triangle),
+            None => {
+                let sample = reduced.samples.sample(b);
+                let mut jacobian = jacobian(reduced, &sample, band.intensity);
+                band.chi_square = residual_square(&jacobian, &sample, band.diffuse, band.intensity);
+                triangles.push(triangle(&mut jacobian));
+            }
+        }
+    }
+    let own = match reduced.share {
+        Share::ShapeAndIntensity if fit.bands.len() > 1 => 1,
+        _ => 2,
+    };
+    let common = common(&triangles, own);
+    finish(&triangles, &common, unit, fit);
+}
+
+/// The same for a fit without a specular term.
+pub(super) fn complete_linear(set: &GeometrySet, samples: &Samples, unit: Option<f64>, fit: &mut Fit) {
+    let mut triangles = Vec::with_capacity(fit.bands.len());
+    for (b, band) in fit.bands.iter_mut().enumerate() {
+        let (sample, gram) = (samples.sample(b), &samples.gram[b]);
+        let column = if gram.s11 > 0.0 { &set.diffuse[..] } else { &[] };
+        band.chi_square = residual_of(&sample, column, band.diffuse);
+        let mut r = [[0.0; 4]; 4];
+        r[0][0] = gram.s11.sqrt();
+        triangles.push((r, [r[0][0], 0.0, 0.0, 0.0]));
+    }
+    let common = Common { own: 2, covariance: [[0.0; 3]; 3], singular: Vec::new() };
+    finish(&triangles, &common, unit, fit);
+}
+
+#[inline(always)]
+fn finish(triangles: &[(Triangle, [f64; 4])], common: &Common, unit: Option<f64>, fit: &mut Fit) {
     let weighted: f64 = fit.bands.iter().map(|band| band.chi_square).sum();
     let unit_or_residual = unit.unwrap_or(fit.degrees_of_freedom / weighted);
-    let common = if columns.is_some() { common_covariance(&triangles) } else { [[0.0; 2]; 2] };
-    for (band, (r, norms)) in fit.bands.iter_mut().zip(&triangles) {
-        band.covariance = covariance(r, norms, &common, unit_or_residual);
-        to_parameters(&mut band.covariance, fit.roughness, fit.index_minus_one, columns.is_some());
+    let specular = !common.singular.is_empty();
+    for (band, (r, norms)) in fit.bands.iter_mut().zip(triangles) {
+        band.covariance = covariance(r, norms, common, unit_or_residual);
+        to_parameters(&mut band.covariance, fit.roughness, fit.index_minus_one, specular);
         let [roughness, index] = fit.at_bound;
         let amplitude = |k: usize, value: f64| norms[k] > 0.0 && value == 0.0;
         let at_bound = [amplitude(0, band.diffuse), amplitude(1, band.intensity), roughness, index];
@@ -44,51 +93,83 @@ pub(super) fn complete(set: &GeometrySet, bands: &[Band], columns: Option<&Colum
         band.chi_square *= unit.unwrap_or(1.0);
     }
     fit.chi_square = weighted * unit.unwrap_or(1.0);
-    if columns.is_some() {
-        let sigma = |k: usize| (common[k][k] / unit_or_residual).sqrt();
+    if specular {
+        let at = |k: usize| 2 - common.own + k;
+        let sigma = |k: usize| (common.covariance[at(k)][at(k)] / unit_or_residual).sqrt();
         fit.log_sigma = [0, 1].map(|k| if fit.at_bound[k] { f64::NAN } else { sigma(k) });
     }
+    fit.singular_values.clone_from(&common.singular);
 }
 
-/// The four weighted columns, each contiguous.
-fn jacobian(set: &GeometrySet, band: &Band, columns: Option<&Columns>, intensity: f64) -> [Vec<f64>; 4] {
-    let n = band.weight.len();
-    let root: Vec<f64> = band.weight.iter().map(|weight| weight.sqrt()).collect();
-    let over_root = |weighted: &f64, root: &f64| if *root > 0.0 { weighted / root } else { 0.0 };
-    let diffuse = band.weighted_diffuse.iter().zip(&root).map(|(w, r)| over_root(w, r)).collect();
-    let mut rest = [vec![0.0; n], vec![0.0; n], vec![0.0; n]];
-    if let Some(columns) = columns {
-        for (k, segment) in set.segments.iter().enumerate() {
-            let (d, dr) = (columns.d[k], columns.d_by_r[k]);
-            for p in segment.start..segment.end {
-                let f = root[p] * columns.fg[p];
-                rest[0][p] = d * f;
-                rest[1][p] = intensity * dr * f;
-                rest[2][p] = intensity * d * root[p] * columns.fg_by_m[p];
+/// Inner products of the four columns.
+#[inline(always)]
+fn gram(p: &Products, intensity: f64) -> Triangle {
+    let (c, g) = (intensity, &p.gram);
+    let upper = [
+        [g.s11, g.s12, c * p.r1, c * p.m1],
+        [0.0, g.s22, c * p.r2, c * p.m2],
+        [0.0, 0.0, c * c * p.rr, c * c * p.rm],
+        [0.0, 0.0, 0.0, c * c * p.mm],
+    ];
+    std::array::from_fn(|i| std::array::from_fn(|j| upper[i.min(j)][i.max(j)]))
+}
+
+/// The triangular factor from the inner products; `None` where they have lost too many digits for it.
+#[inline(always)]
+fn cholesky(gram: &Triangle) -> Option<(Triangle, [f64; 4])> {
+    let norms = std::array::from_fn(|k| gram[k][k].sqrt());
+    let mut r = [[0.0; 4]; 4];
+    for i in 0..4 {
+        for j in i..4 {
+            let known: f64 = (0..i).map(|k| r[k][i] * r[k][j]).sum();
+            let left = gram[i][j] - known;
+            if i != j {
+                r[i][j] = if r[i][i] > 0.0 { left / r[i][i] } else { 0.0 };
+            } else if gram[i][i] == 0.0 {
+                r[i][i] = 0.0;
+            } else if left > CANCELLED * gram[i][i] {
+                r[i][i] = left.sqrt();
+            } else {
+                return None;
             }
         }
     }
-    let [specular, by_r, by_m] = rest;
-    [diffuse, specular, by_r, by_m]
+    Some((r, norms))
 }
 
-fn residual_square(jacobian: &[Vec<f64>; 4], band: &Band, diffuse: f64, intensity: f64) -> f64 {
+/// The four weighted columns, each contiguous.
+fn jacobian(reduced: &Reduced<'_>, sample: &Sample<'_>, intensity: f64) -> [Vec<f64>; 4] {
+    let root: Vec<f64> = sample.weight.iter().map(|weight| weight.sqrt()).collect();
+    let diffuse = sample
+        .weighted_diffuse
+        .iter()
+        .zip(&root)
+        .map(|(weighted, root)| if *root > 0.0 { weighted / root } else { 0.0 })
+        .collect();
+    let scaled = |column: &[f64], scale: f64| column.iter().zip(&root).map(|(x, root)| scale * root * x).collect();
+    let columns = &reduced.columns;
+    [diffuse, scaled(&columns.specular, 1.0), scaled(&columns.by_r, intensity), scaled(&columns.by_m, intensity)]
+}
+
+fn residual_square(jacobian: &[Vec<f64>; 4], sample: &Sample<'_>, diffuse: f64, intensity: f64) -> f64 {
     let columns = jacobian[0].iter().zip(&jacobian[1]);
-    let data = band.value.iter().zip(&band.weight);
     columns
-        .zip(data)
-        .map(|((first, second), (value, weight))| {
-            let residual = value * weight.sqrt() - diffuse * first - intensity * second;
-            residual * residual
-        })
+        .zip(sample.rooted())
+        .map(|((first, second), (_, value))| (value - diffuse * first - intensity * second).powi(2))
         .sum()
 }
 
+/// The same for a diffuse column alone; an empty one stands for none.
+fn residual_of(sample: &Sample<'_>, diffuse: &[f64], amplitude: f64) -> f64 {
+    let column = diffuse.iter().copied().chain(std::iter::repeat(0.0));
+    sample.rooted().zip(column).map(|((root, value), column)| (value - amplitude * root * column).powi(2)).sum()
+}
+
 /// R of a QR decomposition by modified Gram-Schmidt, with the lengths of the columns before it.
-fn triangle(columns: &mut [Vec<f64>; 4]) -> (Triangle, [f64; 4]) {
-    let mut r = [[0.0; 4]; 4];
+fn triangle<const K: usize>(columns: &mut [Vec<f64>; K]) -> ([[f64; K]; K], [f64; K]) {
+    let mut r = [[0.0; K]; K];
     let norms = std::array::from_fn(|k| dot(&columns[k], &columns[k]).sqrt());
-    for k in 0..4 {
+    for k in 0..K {
         let (done, rest) = columns.split_at_mut(k + 1);
         let column = &mut done[k];
         r[k][k] = dot(column, column).sqrt();
@@ -107,87 +188,107 @@ fn triangle(columns: &mut [Vec<f64>; 4]) -> (Triangle, [f64; 4]) {
     (r, norms)
 }
 
-/// Four sums side by side, so that the compiler may use vector instructions.
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    let mut lanes = [0.0; 4];
-    let (chunks_a, chunks_b) = (a.chunks_exact(4), b.chunks_exact(4));
-    let tail: f64 = chunks_a.remainder().iter().zip(chunks_b.remainder()).map(|(x, y)| x * y).sum();
-    for (x, y) in chunks_a.zip(chunks_b) {
-        for lane in 0..4 {
-            lanes[lane] += x[lane] * y[lane];
-        }
-    }
-    (lanes[0] + lanes[2]) + (lanes[1] + lanes[3]) + tail
-}
-
-/// Covariance of (ln r, ln(n - 1)) for weight 1; NaN for a parameter with a part in a direction that cannot be told.
-fn common_covariance(triangles: &[(Triangle, [f64; 4])]) -> [[f64; 2]; 2] {
-    let norm = |k: usize| triangles.iter().map(|(_, norms)| norms[k] * norms[k]).sum::<f64>().sqrt();
-    let norms = [norm(2), norm(3)];
+/// Stacks what each emission value's own columns leave of the common ones, and inverts it by its singular values.
+#[inline(always)]
+fn common(triangles: &[(Triangle, [f64; 4])], own: usize) -> Common {
+    let count = 4 - own;
+    let norm = |k: usize| triangles.iter().map(|(_, norms)| norms[own + k] * norms[own + k]).sum::<f64>().sqrt();
+    let norms: [f64; 3] = std::array::from_fn(|k| if k < count { norm(k) } else { 1.0 });
     if norms.contains(&0.0) {
-        return [[f64::NAN; 2]; 2];
+        return Common { own, covariance: [[f64::NAN; 3]; 3], singular: vec![0.0; count] };
     }
-    let rows: Vec<f64> =
-        triangles.iter().flat_map(|(r, _)| [r[2][2] / norms[0], r[2][3] / norms[1], 0.0, r[3][3] / norms[1]]).collect();
+    let stacked: [Vec<f64>; 3] = std::array::from_fn(|k| {
+        let rows = triangles.iter().flat_map(|(r, _)| (0..count).map(move |i| (r, i)));
+        let mut column: Vec<f64> =
+            rows.map(|(r, i)| if k < count { r[own + i][own + k] / norms[k] } else { 0.0 }).collect();
+        column.resize(column.len().next_multiple_of(super::samples::LANES), 0.0);
+        column
+    });
     let (singular, v) = match triangles {
-        [_] => singular_values(Matrix2::new(rows[0], rows[1], rows[2], rows[3])),
-        _ => {
-            let r = DMatrix::from_row_slice(rows.len() / 2, 2, &rows).qr().r();
-            singular_values(Matrix2::new(r[(0, 0)], r[(0, 1)], r[(1, 0)], r[(1, 1)]))
+        [(r, _)] if count == 2 => decompose::<2>([[r[2][2] / norms[0], r[2][3] / norms[1]], [0.0, r[3][3] / norms[1]]]),
+        _ if count == 2 => {
+            let [first, second, _] = stacked;
+            decompose::<2>(triangle(&mut [first, second]).0)
         }
+        _ => decompose::<3>(triangle(&mut stacked.clone()).0),
     };
-    let mut covariance = [[0.0; 2]; 2];
+    let mut covariance = [[0.0; 3]; 3];
     for (k, &value) in singular.iter().enumerate() {
-        for i in 0..2 {
-            for j in 0..2 {
-                let part = v[(i, k)] * v[(j, k)] / (norms[i] * norms[j]);
-                let untold = value < SINGULAR && part.abs() * norms[i] * norms[j] > 1e-6;
-                covariance[i][j] += if untold {
-                    f64::NAN
-                } else if value < SINGULAR {
-                    0.0
-                } else {
-                    part / (value * value)
+        for i in 0..count {
+            for j in 0..count {
+                let part = v[i][k] * v[j][k];
+                covariance[i][j] += match value < SINGULAR {
+                    true if part.abs() > 1e-6 => f64::NAN,
+                    true => 0.0,
+                    false => part / (norms[i] * norms[j]) / (value * value),
                 };
             }
         }
     }
-    covariance
+    Common { own, covariance, singular }
 }
 
-/// Singular values and right singular vectors (as columns).
-fn singular_values(matrix: Matrix2<f64>) -> ([f64; 2], Matrix2<f64>) {
-    let svd = matrix.svd(false, true);
-    let v = svd.v_t.unwrap_or_else(Matrix2::identity).transpose();
-    ([svd.singular_values[0], svd.singular_values[1]], v)
+/// Singular values and right singular vectors (as columns) of a small triangle.
+#[inline(always)]
+fn decompose<const K: usize>(r: [[f64; K]; K]) -> (Vec<f64>, [[f64; 3]; 3]) {
+    let mut v = [[0.0; 3]; 3];
+    let (mut singular, mut right) = (DVector::zeros(0), DMatrix::zeros(0, 0));
+    if K == 2 {
+        let svd = nalgebra::Matrix2::new(r[0][0], r[0][1], r[1][0], r[1][1]).svd(false, true);
+        if let Some(transposed) = svd.v_t {
+            for (i, row) in v.iter_mut().enumerate().take(2) {
+                (row[0], row[1]) = (transposed[(0, i)], transposed[(1, i)]);
+            }
+        }
+        return (svd.singular_values.iter().copied().collect(), v);
+    }
+    let svd = DMatrix::from_fn(K, K, |i, j| r[i][j]).svd(false, true);
+    if let Some(transposed) = svd.v_t {
+        (singular, right) = (svd.singular_values, transposed);
+    }
+    for i in 0..K.min(right.nrows()) {
+        for k in 0..K {
+            v[i][k] = right[(k, i)];
+        }
+    }
+    (singular.iter().copied().collect(), v)
 }
 
 /// Covariance of (diffuse, specular, ln r, ln(n - 1)) of one emission value, from its R = \[\[R11, R12\], \[0, R22\]\]:
-/// the amplitudes follow the common parameters by X = R11^-1 R12.
-fn covariance(r: &Triangle, norms: &[f64; 4], common: &[[f64; 2]; 2], unit: f64) -> [[f64; 4]; 4] {
-    let fitted = [norms[0] > 0.0, norms[1] > 0.0];
-    let told = |k: usize| r[k][k] > SINGULAR * norms[k];
+/// its own amplitudes follow the common parameters by X = R11^-1 R12.
+#[inline(always)]
+fn covariance(r: &Triangle, norms: &[f64; 4], common: &Common, unit: f64) -> [[f64; 4]; 4] {
+    let own = common.own;
     let mut inverse = [[0.0; 2]; 2];
-    for k in 0..2 {
-        inverse[k][k] = match (fitted[k], told(k)) {
-            (false, _) => 0.0,
-            (true, true) => r[k][k].recip(),
-            (true, false) => f64::NAN,
+    for k in 0..own {
+        inverse[k][k] = match norms[k] > 0.0 {
+            false => 0.0,
+            true if r[k][k] > SINGULAR * norms[k] => r[k][k].recip(),
+            true => f64::NAN,
         };
     }
     inverse[0][1] = -inverse[0][0] * r[0][1] * inverse[1][1];
-    let x: [[f64; 2]; 2] =
-        std::array::from_fn(|i| std::array::from_fn(|j| inverse[i][0] * r[0][2 + j] + inverse[i][1] * r[1][2 + j]));
-    let product = |i: usize, j: usize| -> f64 { (0..2).map(|k| finite_times(x[i][k], common[k][j])).sum() };
+    let mut x = [[0.0; 3]; 2];
+    for i in 0..own {
+        for j in 0..4 - own {
+            x[i][j] = (0..own).map(|k| finite_times(inverse[i][k], r[k][own + j])).sum();
+        }
+    }
+    let product =
+        |i: usize, j: usize| -> f64 { (0..4 - own).map(|k| finite_times(x[i][k], common.covariance[k][j])).sum() };
     let mut covariance = [[0.0; 4]; 4];
-    for i in 0..2 {
-        for j in 0..2 {
-            let own: f64 = (0..2).map(|k| inverse[i][k] * inverse[j][k]).sum();
-            let carried: f64 = (0..2).map(|k| finite_times(product(i, k), x[j][k])).sum();
-            covariance[i][j] = (own + carried) / unit;
-            covariance[i][2 + j] = -product(i, j) / unit;
-            covariance[2 + j][i] = covariance[i][2 + j];
-            covariance[2 + i][2 + j] = common[i][j] / unit;
+    for i in 0..4 {
+        for j in 0..4 {
+            covariance[i][j] = match (i < own, j < own) {
+                (true, true) => {
+                    let alone: f64 = (0..own).map(|k| inverse[i][k] * inverse[j][k]).sum();
+                    let carried: f64 = (0..4 - own).map(|k| finite_times(product(i, k), x[j][k])).sum();
+                    alone + carried
+                }
+                (true, false) => -product(i, j - own),
+                (false, true) => -product(j, i - own),
+                (false, false) => common.covariance[i - own][j - own],
+            } / unit;
         }
     }
     covariance
