@@ -2,12 +2,14 @@
 
 use ndarray::{ArrayView1, ArrayView2, Axis};
 
-use super::curvature::{Columns, Curvature, Point, amplitudes, evaluate};
+use super::curvature::{Columns, Curvature, Point, amplitudes};
+use super::descent::{Bounds, End, Rules, descend};
 use super::geometry_set::{GeometrySet, INDEX_BOX, INDEX_NODES};
 use super::left_out::{LeftOut, reason};
 use super::linear::{Amplitudes, Gram};
 use super::magnitude;
 use super::outcome::{BandFit, Fit, Stop};
+use super::reduced::Reduced;
 use super::statistics;
 
 /// Stop when the predicted decrease of chi-square is below this share of chi-square per degree of freedom: the
@@ -16,7 +18,7 @@ const TOLERANCE: f64 = 1e-8;
 /// Most evaluations of one polish; five are usual.
 const MOST_EVALUATIONS: usize = 60;
 /// Longest step in ln r and ln(n - 1).
-const STEP_CAPS: [f64; 2] = [0.7, 1.5];
+const LONGEST_STEPS: [f64; 2] = [0.7, 1.5];
 /// A specular term must lower chi-square by this much to be reported: of two thousand pure diffusers the luckiest
 /// noise gained 13.
 pub(super) const SEEN: f64 = 15.0;
@@ -96,14 +98,6 @@ struct Polished {
     /// Which of (roughness, index) are held on the edge of the box.
     held: [bool; 2],
     evaluations: usize,
-}
-
-impl Polished {
-    /// A polish that found no step to take with these parameters free.
-    fn ended(point: Point, curvature: Curvature, free: [bool; 2], evaluations: usize) -> Self {
-        let stop = if free == [true, true] { Stop::Converged } else { Stop::AtBound };
-        Self { point, curvature, stop, held: free.map(|free| !free), evaluations }
-    }
 }
 
 impl<'a> Fitter<'a> {
@@ -276,7 +270,7 @@ impl<'a> Fitter<'a> {
         let mut columns = Columns::default();
         let mut best: Option<Polished> = None;
         for point in self.starts(start).into_iter().flatten() {
-            let polished = self.polish(bands, point, freedom, &mut columns);
+            let Some(polished) = self.polish(bands, point, freedom, &mut columns) else { continue };
             let evaluations = polished.evaluations + best.as_ref().map_or(0, |best| best.evaluations);
             let better = best.as_ref().is_none_or(|b| polished.curvature.chi_square < b.curvature.chi_square);
             best = if better { Some(polished) } else { best };
@@ -357,43 +351,26 @@ impl<'a> Fitter<'a> {
             .collect()
     }
 
-    /// Levenberg-Marquardt on (ln r, ln(n - 1)) within the box, with projected gradient.
-    fn polish(&self, bands: &[Band], start: Point, freedom: f64, columns: &mut Columns) -> Polished {
+    /// Goes down to the minimum over (ln r, ln(n - 1)) within the box; `None` where the start has no chi-square.
+    fn polish(&self, bands: &[Band], start: Point, freedom: f64, columns: &mut Columns) -> Option<Polished> {
         let (low, high) = self.set.roughness_box;
-        let bounds = [(low.ln(), high.ln()), (INDEX_BOX.0.ln(), INDEX_BOX.1.ln())];
-        let mut point = start;
-        columns.update(self.set, &point);
-        let mut current = evaluate(self.set, columns, bands);
-        let mut damping = 1e-4;
-        for evaluations in 1..MOST_EVALUATIONS {
-            let free = free_parameters(&point, &current, &bounds);
-            let step = damped_step(&current, free, damping);
-            let undamped = damped_step(&current, free, 0.0);
-            let threshold = (TOLERANCE * current.chi_square / freedom).max(current.noise);
-            let decrease = -(current.gradient[0] * undamped[0] + current.gradient[1] * undamped[1]);
-            if decrease.is_nan() || decrease <= threshold {
-                return Polished::ended(point, current, free, evaluations);
-            }
-            let trial = Point {
-                log: std::array::from_fn(|k| {
-                    (point.log[k] + step[k].clamp(-STEP_CAPS[k], STEP_CAPS[k])).clamp(bounds[k].0, bounds[k].1)
-                }),
-            };
-            columns.update(self.set, &trial);
-            let next = evaluate(self.set, columns, bands);
-            if next.chi_square <= current.chi_square {
-                point = trial;
-                current = next;
-                damping = (damping * 0.1).max(1e-12);
-            } else if current.chi_square - next.chi_square > -threshold {
-                // No decrease left that rounding would let through.
-                return Polished::ended(point, current, free, evaluations + 1);
-            } else {
-                damping = (damping * 10.0).max(1e-3);
-            }
-        }
-        let held = free_parameters(&point, &current, &bounds).map(|free| !free);
-        Polished { point, curvature: current, stop: Stop::EvaluationLimit, held, evaluations: MOST_EVALUATIONS }
+        let bounds = Bounds {
+            low: &[low.ln(), INDEX_BOX.0.ln()],
+            high: &[high.ln(), INDEX_BOX.1.ln()],
+            longest: &LONGEST_STEPS,
+        };
+        let rules = Rules { tolerance: TOLERANCE, freedom, evaluations: MOST_EVALUATIONS, damping: 1e-4 };
+        let mut landscape = Reduced { set: self.set, bands, columns, last: Curvature::default() };
+        let descent = descend(&mut landscape, &start.log, &bounds, &rules).ok()?;
+        let held = [descent.held[0], descent.held[1]];
+        let stop = match descent.end {
+            End::Converged if held == [false, false] => Stop::Converged,
+            End::Converged => Stop::AtBound,
+            End::Stalled | End::Undefined => Stop::Stalled,
+            End::EvaluationLimit => Stop::EvaluationLimit,
+        };
+        let point = Point { log: [descent.point[0], descent.point[1]] };
+        Some(Polished { point, curvature: descent.slope, stop, held, evaluations: descent.evaluations })
     }
 }
 
@@ -413,27 +390,4 @@ fn band_fits(bands: &[Band], amplitudes: &[Amplitudes]) -> Vec<BandFit> {
             covariance: [[0.0; 4]; 4],
         })
         .collect()
-}
-
-/// A parameter on its bound whose gradient points outwards is held.
-fn free_parameters(point: &Point, curvature: &Curvature, bounds: &[(f64, f64); 2]) -> [bool; 2] {
-    std::array::from_fn(|k| {
-        let (low, high) = bounds[k];
-        let outwards = (point.log[k] <= low && curvature.gradient[k] > 0.0)
-            || (point.log[k] >= high && curvature.gradient[k] < 0.0);
-        !outwards
-    })
-}
-
-/// The Gauss-Newton step with Marquardt's damping; a held parameter does not move, nor does one without curvature.
-fn damped_step(curvature: &Curvature, free: [bool; 2], damping: f64) -> [f64; 2] {
-    let h = &curvature.hessian;
-    let g = &curvature.gradient;
-    let (h0, h1) = (h[0][0] * (1.0 + damping), h[1][1] * (1.0 + damping));
-    let alone = |h: f64, g: f64, free: bool| if free && h > 0.0 { -g / h } else { 0.0 };
-    let determinant = h0 * h1 - h[0][1] * h[0][1];
-    if free == [true, true] && determinant > 1e-14 * h0 * h1 {
-        return [(h[0][1] * g[1] - h1 * g[0]) / determinant, (h[0][1] * g[0] - h0 * g[1]) / determinant];
-    }
-    [alone(h0, g[0], free[0]), alone(h1, g[1], free[1])]
 }
