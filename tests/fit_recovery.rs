@@ -80,20 +80,6 @@ fn the_covariance_is_that_of_the_full_jacobian() {
     }
 }
 
-/// From c_s = 0 the noise always finds a small lobe; it must not be reported.
-#[test]
-fn a_pure_diffuser_has_no_specular_term() {
-    let (grid, set) = (paper_grid(), paper_set());
-    let mut random = Random::new(7);
-    for _ in 0..trials().min(400) {
-        let truth = Truth { albedo: 0.8, intensity: 0.0, roughness: 0.1, index_minus_one: 0.5 };
-        let (values, sigma) = measure(&truth, &grid, 0.01, &mut random);
-        let fit = Fitter::new(&set, BOTH).fit(&values, Some(&sigma)).unwrap();
-        assert!(!fit.has_specular() && fit.roughness.is_nan(), "{fit:?}");
-        assert!((fit.bands[0].diffuse - 0.8).abs() < 5.0 * fit.standard_uncertainty(0)[0]);
-    }
-}
-
 #[test]
 fn several_bands_share_roughness_and_index() {
     let (grid, set) = (paper_grid(), paper_set());
@@ -121,26 +107,6 @@ fn several_bands_share_roughness_and_index() {
         ratio > 0.35 && ratio < 0.55,
         "five bands know the roughness {ratio} as well as one; expected about 1/sqrt 5"
     );
-}
-
-#[test]
-fn what_the_grid_cannot_tell_has_no_number() {
-    // Source and detector always together: F is F(0) everywhere, so intensity and index are one number.
-    let grid: Vec<_> = (0..9)
-        .flat_map(|step| {
-            let theta = 10.0 * f64::from(step);
-            [(theta, 0.0), (theta, 90.0), (theta, 180.0)]
-        })
-        .map(|(theta, phi)| bbrf::quantity::Geometry::from_degrees(theta, phi, theta, phi).unwrap())
-        .collect();
-    let set =
-        GeometrySet::new(&grid, &Reference::None, Distribution::GaussianHalfHeight, Denominator::CosThetaI).unwrap();
-    let truth = Truth { albedo: 0.5, intensity: 20.0, roughness: 0.3, index_minus_one: 0.5 };
-    let (values, sigma) = measure(&truth, &grid, 0.01, &mut Random::new(3));
-    let fit = Fitter::new(&set, BOTH).fit(&values, Some(&sigma)).unwrap();
-    let [diffuse, intensity, roughness, index] = fit.standard_uncertainty(0);
-    assert!(index.is_nan() && intensity.is_nan(), "{fit:?}");
-    assert!(diffuse.is_finite() && roughness.is_finite(), "{fit:?}");
 }
 
 #[test]

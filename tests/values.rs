@@ -1,93 +1,9 @@
-//! The terms against 60-digit arithmetic (`testdata/reference/terms.py` makes the table), and at the edges where the
-//! naive formulas give NaN.
+//! The terms under each reference, and as the command line reads them. Their digits are `terms_60_digits.rs`'s, their edges
+//! `hard_cases/terms.rs`'s.
 #![allow(clippy::unwrap_used)]
 
 use bbrf::quantity::{Geometry, Reference, SignHabit};
 use bbrf::terms::{Denominator, Distribution, Term, TorranceSparrow, Undefined};
-
-/// Relative error allowed, times 1 + |ln D|: D multiplies the relative error of its argument by that.
-const VALUE_TOLERANCE: f64 = 2e-14;
-/// Derivatives cross zero, so their error is measured against the sum of the absolute values of their terms.
-const DERIVATIVE_TOLERANCE: f64 = 1e-12;
-/// Below this D is subnormal or zero and is compared absolutely.
-const SMALLEST_NORMAL: f64 = 2.3e-308;
-
-struct Row {
-    geometry: Geometry,
-    term: TorranceSparrow,
-    phi: f64,
-    d: f64,
-    g: f64,
-    f: f64,
-    value: f64,
-    by_roughness: (f64, f64),
-    by_index: (f64, f64),
-    text: String,
-}
-
-fn rows() -> Vec<Row> {
-    let text = include_str!("../testdata/reference/terms.csv");
-    text.lines().skip(2).map(parse).collect()
-}
-
-fn parse(line: &str) -> Row {
-    let fields: Vec<&str> = line.split(',').collect();
-    let number = |i: usize| fields[i].parse::<f64>().unwrap();
-    Row {
-        geometry: Geometry::from_degrees(number(0), number(1), number(2), number(3)).unwrap(),
-        term: TorranceSparrow {
-            intensity: 1.0,
-            distribution: fields[4].parse().unwrap(),
-            denominator: fields[5].parse().unwrap(),
-            roughness: number(6),
-            refractive_index: number(7),
-        },
-        phi: number(8),
-        d: number(9),
-        g: number(10),
-        f: number(11),
-        value: number(12),
-        by_roughness: (number(13), number(14)),
-        by_index: (number(15), number(16)),
-        text: line.to_owned(),
-    }
-}
-
-fn assert_close(name: &str, found: f64, expected: f64, scale: f64, tolerance: f64, row: &Row) {
-    let error = (found - expected).abs();
-    let allowed = tolerance * scale.abs();
-    assert!(
-        error <= allowed.max(SMALLEST_NORMAL),
-        "{name}: {found:e}, expected {expected:e}, off by {:e} of the scale\n{}",
-        error / scale.abs(),
-        row.text
-    );
-}
-
-#[test]
-fn factors_and_term_keep_their_digits() {
-    for row in rows() {
-        let factors = row.term.factors(&row.geometry).unwrap();
-        let allowed = VALUE_TOLERANCE * (1.0 + row.d.max(f64::MIN_POSITIVE).ln().abs());
-        assert_close("phi", factors.phi_rad, row.phi, row.phi, 2e-15, &row);
-        assert_close("D", factors.d, row.d, row.d, allowed, &row);
-        assert_close("G", factors.g, row.g, row.g, VALUE_TOLERANCE, &row);
-        assert_close("F", factors.f, row.f, row.f, VALUE_TOLERANCE, &row);
-        let term = Term::TorranceSparrow(row.term).evaluate(&row.geometry, &Reference::None).unwrap();
-        assert_close("term", term.value, row.value, row.value, allowed, &row);
-    }
-}
-
-#[test]
-fn derivatives_are_exact() {
-    for row in rows() {
-        let term = Term::TorranceSparrow(row.term).evaluate(&row.geometry, &Reference::None).unwrap();
-        let allowed = DERIVATIVE_TOLERANCE * (1.0 + 0.02 * row.d.max(f64::MIN_POSITIVE).ln().abs());
-        assert_eq!(term.by[0], term.value, "c_s is 1");
-        assert_close("by roughness", term.by[1], row.by_roughness.0, row.by_roughness.1, allowed, &row);
-        assert_close("by index", term.by[2], row.by_index.0, row.by_index.1, allowed, &row);
-    }
-}
 
 fn shiny(distribution: Distribution, denominator: Denominator) -> Term {
     Term::TorranceSparrow(TorranceSparrow {
@@ -97,70 +13,6 @@ fn shiny(distribution: Distribution, denominator: Denominator) -> Term {
         distribution,
         denominator,
     })
-}
-
-#[test]
-fn below_the_horizon_every_term_is_exactly_zero() {
-    let below = [Geometry::from_degrees(100.0, 180.0, 20.0, 0.0), Geometry::from_degrees(20.0, 180.0, 90.0001, 0.0)];
-    for geometry in below.map(Result::unwrap) {
-        for &distribution in Distribution::ALL {
-            for &denominator in Denominator::ALL {
-                let value = shiny(distribution, denominator).evaluate(&geometry, &Reference::None).unwrap();
-                assert_eq!((value.value, value.by), (0.0, [0.0; 3]));
-            }
-        }
-        let diffuse = Term::Lambertian { albedo: 0.8 }.evaluate(&geometry, &Reference::SameGeometry).unwrap();
-        assert_eq!(diffuse.value, 0.0);
-    }
-}
-
-/// The naive 1/cos(theta_i) is 0/0 at 90 degrees; the limit of G/cos(theta_i) is 2 (N.Q)/(V.Q).
-#[test]
-fn at_grazing_incidence_the_one_sided_limit_is_returned() {
-    for &distribution in Distribution::ALL {
-        for &denominator in Denominator::ALL {
-            let at = |theta_i: f64| {
-                let geometry = Geometry::from_degrees(theta_i, 180.0, 85.0, 0.0).unwrap();
-                shiny(distribution, denominator).evaluate(&geometry, &Reference::None).unwrap().value
-            };
-            let (limit, near) = (at(90.0), at(90.0 - 1e-12));
-            assert!((limit - near).abs() <= 1e-6 * near.abs() + 1e-6, "{distribution} {denominator}: {limit} {near}");
-        }
-    }
-}
-
-#[test]
-fn what_has_no_limit_says_so_and_is_never_nan() {
-    let opposite = Geometry::from_degrees(90.0, 180.0, 90.0, 0.0).unwrap();
-    let term = shiny(Distribution::Gaussian, Denominator::CosThetaI);
-    assert_eq!(term.evaluate(&opposite, &Reference::None), Err(Undefined::NoHalfVector));
-    let aside = Geometry::from_degrees(90.0, 180.0, 90.0, 90.0).unwrap();
-    let both = shiny(Distribution::TrowbridgeReitz, Denominator::CosICosV);
-    assert_eq!(both.evaluate(&aside, &Reference::None), Err(Undefined::PathDependent));
-    let grazing = Geometry::from_degrees(90.0, 180.0, 85.0, 0.0).unwrap();
-    assert_eq!(term.evaluate(&grazing, &Reference::SameGeometry), Err(Undefined::Unbounded));
-}
-
-/// exp underflows, its derivative is 0 * inf in the naive form.
-#[test]
-fn a_vanishing_roughness_gives_zero_and_not_nan() {
-    let geometry = Geometry::from_signed(40.0, 30.0, SignHabit::MirrorAtEqual).unwrap();
-    for &distribution in Distribution::ALL {
-        for roughness in [1e-3, 1e-8, 1e-160, 1e-300] {
-            let term = Term::TorranceSparrow(TorranceSparrow {
-                intensity: 30.0,
-                roughness,
-                refractive_index: 1.45,
-                distribution,
-                denominator: Denominator::CosThetaI,
-            });
-            let value = term.evaluate(&geometry, &Reference::None).unwrap();
-            assert!(
-                value.value >= 0.0 && value.by.iter().all(|by| !by.is_nan()),
-                "{distribution} {roughness:e} {value:?}"
-            );
-        }
-    }
 }
 
 #[test]

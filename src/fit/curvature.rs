@@ -3,6 +3,7 @@
 //! The amplitudes are eliminated one after the other: first the diffuse one of each emission value, then the specular
 //! one, of each emission value or common to all.
 
+use super::descent::Slope;
 use super::linear::{Amplitudes, Gram};
 use super::products::Products;
 
@@ -161,5 +162,36 @@ fn common_intensity(grams: impl Iterator<Item = Gram> + Clone) -> Vec<Amplitudes
             let of = |(gram, free): (Gram, &bool)| gram.amplitudes(if *free { diffuse(&gram) } else { 0.0 }, specular);
             return grams.zip(&free).map(of).collect();
         }
+    }
+}
+
+impl Slope for Curvature {
+    fn gradient(&self) -> &[f64] {
+        &self.gradient
+    }
+
+    fn step(&self, pinned: &[Option<f64>], damping: f64, step: &mut [f64]) {
+        let ([[a, b], [_, c]], [g, h]) = (self.hessian, self.gradient);
+        let (a, c) = (a * (1.0 + damping), c * (1.0 + damping));
+        let determinant = a * c - b * b;
+        let alone = |curvature: f64, gradient: f64| if curvature > 0.0 { -gradient / curvature } else { 0.0 };
+        let [first, second] = match [pinned[0], pinned[1]] {
+            [None, None] if determinant > 1e-14 * a * c => {
+                [(b * h - c * g) / determinant, (b * g - a * h) / determinant]
+            }
+            // Columns that agree to rounding: each goes its own way, and the loop sees whether that is down.
+            [None, None] => [alone(a, g), alone(c, h)],
+            [None, Some(second)] => [alone(a, g + b * second), second],
+            [Some(first), None] => [first, alone(c, h + b * first)],
+            [Some(first), Some(second)] => [first, second],
+        };
+        step[0] = first;
+        step[1] = second;
+    }
+
+    fn decrease(&self, step: &[f64]) -> f64 {
+        let ([[a, b], [_, c]], [g, h]) = (self.hessian, self.gradient);
+        let (x, y) = (step[0], step[1]);
+        -(2.0 * (g * x + h * y) + a * x * x + 2.0 * b * x * y + c * y * y)
     }
 }

@@ -8,12 +8,13 @@
 //! How it works. The model is linear in its amplitudes and non-linear in roughness r and index n alone. So the
 //! amplitudes are solved for, non-negatively, inside every evaluation (variable projection), and a two-parameter
 //! problem is left, in ln r and ln(n-1). A coarse grid over it ([`GeometrySet`] keeps its tables) gives the starts;
-//! Levenberg-Marquardt polishes the two best that differ in roughness. Everything that depends on the geometries alone is
+//! Levenberg-Marquardt ([`descent`]) polishes the two best that differ in roughness. Everything that depends on the geometries alone is
 //! in the set, sorted by half-vector angle, so that an evaluation needs one D per distinct angle and one F per distinct
 //! half angle.
 
 mod columns;
 mod curvature;
+pub mod descent;
 mod geometry_set;
 mod identifiability;
 mod left_out;

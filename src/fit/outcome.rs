@@ -12,6 +12,8 @@ pub enum Stop {
     AtBound,
     /// Only amplitudes were fitted: solved exactly.
     Linear,
+    /// A lower chi-square is predicted, and no step reaches it.
+    Stalled,
     /// The limit of evaluations was reached.
     EvaluationLimit,
 }
@@ -30,6 +32,7 @@ impl Stop {
             Self::Converged => "converged",
             Self::AtBound => "stopped on the edge of the parameter box",
             Self::Linear => "solved exactly (linear)",
+            Self::Stalled => "stopped where a lower chi-square is predicted and no step reaches it",
             Self::EvaluationLimit => "stopped at the limit of evaluations",
         }
     }

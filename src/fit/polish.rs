@@ -1,7 +1,8 @@
-//! Levenberg-Marquardt on (ln r, ln(n - 1)) within the box, with projected gradient.
+//! The two-parameter problem that is left when the amplitudes are solved for, as a landscape to descend in.
 
 use super::columns::{Columns, Point};
 use super::curvature::{Curvature, Held, Share, curvature};
+use super::descent::{Bounds, End, Height, Landscape, Rules, descend};
 use super::geometry_set::GeometrySet;
 use super::outcome::Stop;
 use super::products::{Products, products};
@@ -13,7 +14,7 @@ const TOLERANCE: f64 = 1e-8;
 /// Most evaluations of one polish; five are usual.
 const MOST_EVALUATIONS: usize = 60;
 /// Longest step in ln r and ln(n - 1).
-const STEP_CAPS: [f64; 2] = [0.7, 1.5];
+const LONGEST_STEPS: [f64; 2] = [0.7, 1.5];
 
 /// The reduced problem of one set of samples, with the room that its evaluations need.
 #[derive(Debug)]
@@ -57,89 +58,65 @@ impl<'a> Reduced<'a> {
         curvature(&self.products, self.share, held)
     }
 
-    /// The minimum that a start leads to; `None` where it leads to the one that is `known` already.
+    /// The minimum that a start leads to; `None` where that is the one `known` already, or where the start has no
+    /// chi-square.
     #[inline(always)]
     pub(super) fn polish(&mut self, start: Point, fixed: Fixed, known: Option<&Polished>) -> Option<Polished> {
-        let mut point = start;
-        let mut current = self.evaluate(&point, fixed.amplitude);
-        let mut damping = 1e-4;
-        for _ in 1..MOST_EVALUATIONS {
-            let inside = inside(&point, &current, &self.bounds);
-            let free = [0, 1].map(|k| inside[k] && !fixed.shape[k]);
-            let threshold = (TOLERANCE * current.chi_square / self.freedom).max(current.noise);
-            let undamped = damped_step(&current, free, 0.0);
-            let decrease = -(current.gradient[0] * undamped[0] + current.gradient[1] * undamped[1]);
-            if decrease.is_nan() || decrease <= threshold {
-                return Some(Polished::ended(point, current, inside));
-            }
-            let step = damped_step(&current, free, damping);
-            let trial = Point {
-                log: std::array::from_fn(|k| {
-                    let (low, high) = self.bounds[k];
-                    let moved = point.log[k] + step[k].clamp(-STEP_CAPS[k], STEP_CAPS[k]);
-                    if fixed.shape[k] { point.log[k] } else { moved.clamp(low, high) }
-                }),
-            };
-            let next = self.evaluate(&trial, fixed.amplitude);
-            if next.chi_square <= current.chi_square {
-                point = trial;
-                current = next;
-                damping = (damping * 0.1).max(1e-12);
-                if known.is_some_and(|known| known.attracts(&point, self.freedom)) {
-                    return None;
-                }
-            } else if current.chi_square - next.chi_square > -threshold {
-                // No decrease left that rounding would let through.
-                return Some(Polished::ended(point, current, inside));
-            } else {
-                damping = (damping * 10.0).max(1e-3);
-            }
-        }
-        let on_edge = inside(&point, &current, &self.bounds).map(|inside| !inside);
-        Some(Polished { point, curvature: current, stop: Stop::EvaluationLimit, on_edge })
+        let bound = |k: usize| if fixed.shape[k] { (start.log[k], start.log[k]) } else { self.bounds[k] };
+        let (roughness, index) = (bound(0), bound(1));
+        let bounds = Bounds { low: &[roughness.0, index.0], high: &[roughness.1, index.1], longest: &LONGEST_STEPS };
+        let rules = Rules { tolerance: TOLERANCE, freedom: self.freedom, evaluations: MOST_EVALUATIONS, damping: 1e-4 };
+        let mut walk = Walk { held: fixed.amplitude, known, last: Curvature::default(), reduced: self };
+        let descent = descend(&mut walk, &start.log, &bounds, &rules).ok()?;
+        let on_edge = [0, 1].map(|k| descent.held[k] && !fixed.shape[k]);
+        let stop = match descent.end {
+            End::Known => return None,
+            End::Converged if on_edge == [false, false] => Stop::Converged,
+            End::Converged => Stop::AtBound,
+            End::Stalled | End::Undefined => Stop::Stalled,
+            End::EvaluationLimit => Stop::EvaluationLimit,
+        };
+        let point = Point { log: [descent.point[0], descent.point[1]] };
+        Some(Polished { point, curvature: descent.slope, stop, on_edge })
+    }
+}
+
+/// Chi-square over (ln r, ln(n - 1)), with the best amplitudes at every point.
+struct Walk<'a, 'b> {
+    reduced: &'a mut Reduced<'b>,
+    held: Held,
+    known: Option<&'a Polished>,
+    /// At the point asked for last.
+    last: Curvature,
+}
+
+impl Landscape for Walk<'_, '_> {
+    type Slope = Curvature;
+
+    #[inline(always)]
+    fn height(&mut self, at: &[f64]) -> Height {
+        self.last = self.reduced.evaluate(&Point { log: [at[0], at[1]] }, self.held);
+        Height { chi_square: self.last.chi_square, noise: self.last.noise }
+    }
+
+    #[inline(always)]
+    fn slope(&mut self) -> Option<Curvature> {
+        Some(self.last)
+    }
+
+    fn is_known(&self, at: &[f64]) -> bool {
+        self.known.is_some_and(|known| known.attracts(at, self.reduced.freedom))
     }
 }
 
 impl Polished {
-    /// A polish that found no step to take.
-    fn ended(point: Point, curvature: Curvature, inside: [bool; 2]) -> Self {
-        let stop = if inside == [true, true] { Stop::Converged } else { Stop::AtBound };
-        Self { point, curvature, stop, on_edge: inside.map(|inside| !inside) }
-    }
-
     /// True for a point so near this minimum that its parabola lifts chi-square by less than one unit (of chi-square
     /// per degree of freedom): from there nothing but this minimum is reached.
-    #[inline(always)]
-    fn attracts(&self, point: &Point, freedom: f64) -> bool {
-        let [x, y] = [0, 1].map(|k| point.log[k] - self.point.log[k]);
+    fn attracts(&self, at: &[f64], freedom: f64) -> bool {
+        let [x, y] = [0, 1].map(|k| at[k] - self.point.log[k]);
         let h = &self.curvature.hessian;
         let lift = h[0][0] * x * x + 2.0 * h[0][1] * x * y + h[1][1] * y * y;
         // A direction without curvature attracts nobody: the point must be near in its logarithms, too.
         x.abs() < 0.2 && y.abs() < 0.2 && lift < self.curvature.chi_square / freedom
     }
-}
-
-/// A parameter on its bound whose gradient points outwards is not inside.
-#[inline(always)]
-fn inside(point: &Point, curvature: &Curvature, bounds: &[(f64, f64); 2]) -> [bool; 2] {
-    std::array::from_fn(|k| {
-        let (low, high) = bounds[k];
-        let outwards = (point.log[k] <= low && curvature.gradient[k] > 0.0)
-            || (point.log[k] >= high && curvature.gradient[k] < 0.0);
-        !outwards
-    })
-}
-
-/// The Gauss-Newton step with Marquardt's damping; a held parameter does not move, nor does one without curvature.
-#[inline(always)]
-fn damped_step(curvature: &Curvature, free: [bool; 2], damping: f64) -> [f64; 2] {
-    let h = &curvature.hessian;
-    let g = &curvature.gradient;
-    let (h0, h1) = (h[0][0] * (1.0 + damping), h[1][1] * (1.0 + damping));
-    let alone = |h: f64, g: f64, free: bool| if free && h > 0.0 { -g / h } else { 0.0 };
-    let determinant = h0 * h1 - h[0][1] * h[0][1];
-    if free == [true, true] && determinant > 1e-14 * h0 * h1 {
-        return [(h[0][1] * g[1] - h1 * g[0]) / determinant, (h[0][1] * g[0] - h0 * g[1]) / determinant];
-    }
-    [alone(h0, g[0], free[0]), alone(h1, g[1], free[1])]
 }

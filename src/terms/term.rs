@@ -106,15 +106,14 @@ impl Term {
                 Evaluation { value: amplitude * shape, by: [shape, 0.0, 0.0] }.finite()
             }
             Self::TorranceSparrow(term) => {
-                let Specular { value, by } = term.specular(geometry)?;
                 let lit = reference.lit_fraction(geometry)?;
-                if value == 0.0 && by == [0.0; 3] {
-                    return Ok(Evaluation { value, by });
+                if lit > 0.0 {
+                    let Specular { value, by } = term.specular(geometry, lit)?;
+                    return Evaluation { value, by }.finite();
                 }
-                if lit == 0.0 {
-                    return Err(Undefined::Unbounded);
-                }
-                Evaluation { value: value / lit, by: by.map(|derivative| derivative / lit) }.finite()
+                let Specular { value, by } = term.specular(geometry, 1.0)?;
+                let is_zero = value == 0.0 && by == [0.0; 3];
+                if is_zero { Ok(Evaluation { value, by }) } else { Err(Undefined::Unbounded) }
             }
         }
     }

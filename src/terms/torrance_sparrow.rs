@@ -75,7 +75,9 @@ impl TorranceSparrow {
         if factors.d.is_finite() && factors.f.is_finite() { Ok(factors) } else { Err(Undefined::NotFinite) }
     }
 
-    pub(super) fn specular(&self, geometry: &Geometry) -> Result<Specular, Undefined> {
+    /// Y/E over `lit`, what the reference received of the beam. D is multiplied last: its product with a small reflectance
+    /// may be below the range of numbers where the quotient is not.
+    pub(super) fn specular(&self, geometry: &Geometry, lit: f64) -> Result<Specular, Undefined> {
         if geometry.is_below_horizon() {
             return Ok(Specular { value: 0.0, by: [0.0; 3] });
         }
@@ -86,15 +88,13 @@ impl TorranceSparrow {
             Err(Undefined::PathDependent) if d.value == 0.0 => 0.0,
             other => other?,
         };
-        let shape = d.value * angular * f.value;
+        let angular = angular / lit;
+        let over = angular * f.value;
+        let shape = d.value * over;
         let by_roughness = if d.by_log_roughness == 0.0 { 0.0 } else { d.by_log_roughness / self.roughness };
         Ok(Specular {
             value: self.intensity * shape,
-            by: [
-                shape,
-                self.intensity * angular * f.value * by_roughness,
-                self.intensity * d.value * angular * f.by_index,
-            ],
+            by: [shape, self.intensity * over * by_roughness, self.intensity * d.value * (angular * f.by_index)],
         })
     }
 }

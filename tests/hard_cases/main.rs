@@ -1,0 +1,10 @@
+//! The cases in which the naive way fails, each as the promise that a user would notice; how the naive way fails is said
+//! beside it. `terms` and `fits` hold the cases; `tests/descent.rs` has those of the least-squares loop alone, and
+//! `tests/fit_recovery.rs` starts from nowhere two thousand times.
+#![allow(unreachable_pub, clippy::unwrap_used)]
+
+#[path = "../common/scans.rs"]
+mod scans;
+
+mod fits;
+mod terms;
