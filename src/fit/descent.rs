@@ -16,6 +16,7 @@ mod sharpen;
 mod square_root;
 
 pub use bounds::Bounds;
+use bounds::Room;
 pub use dense::{LeastSquares, Residuals};
 pub use sharpen::sharpen;
 pub use square_root::SquareRootInformation;
@@ -137,12 +138,11 @@ pub fn descend<L: Landscape>(
     let mut point: Vec<f64> = start.iter().enumerate().map(|(k, x)| bounds.clamp(k, *x)).collect();
     let (mut height, mut slope) = look(landscape, &point).ok_or(UndefinedStart)?;
     let (mut evaluations, mut damping) = (1, rules.damping);
-    let mut step = vec![0.0; point.len()];
-    let mut trial = point.clone();
+    let mut room = Room::new(point.len());
     let mut rejections = 0;
     loop {
-        bounds.step(&slope, &point, 0.0, &mut step);
-        let left = slope.decrease(&step);
+        bounds.step(&slope, &point, 0.0, &mut room);
+        let left = slope.decrease(&room.step);
         let threshold = (rules.tolerance * height.chi_square / rules.freedom).max(height.noise);
         let mut predicted = left;
         let mut end = match left {
@@ -153,10 +153,10 @@ pub fn descend<L: Landscape>(
             _ => None,
         };
         if end.is_none() {
-            bounds.damped_step(&slope, &point, damping, &mut step, &mut trial);
+            bounds.damped_step(&slope, &point, damping, &mut room);
             // A step too short to be told from rounding, and a longer one went up.
-            predicted = slope.decrease(&step);
-            let short = trial == point || predicted <= height.noise;
+            predicted = slope.decrease(&room.step);
+            let short = room.trial == point || predicted <= height.noise;
             end = (rejections > 0 && short).then_some(End::Stalled);
         }
         if let Some(end) = end {
@@ -164,13 +164,13 @@ pub fn descend<L: Landscape>(
             return Ok(Descent { point, height, slope, held, left, evaluations, end });
         }
         evaluations += 1;
-        match lower(landscape, &trial, &height) {
+        match lower(landscape, &room.trial, &height) {
             Some(next) => {
                 // Where the picture was right to a percent the next step may trust it ten times as much.
                 let share = (height.chi_square - next.0.chi_square) / predicted;
                 damping = (damping * (1.0 - (2.0 * share - 1.0).powi(3)).clamp(LARGEST_CUT, 1.0)).max(LEAST_DAMPING);
                 (height, slope) = next;
-                std::mem::swap(&mut point, &mut trial);
+                point.copy_from_slice(&room.trial);
                 rejections = 0;
             }
             None => {

@@ -1,4 +1,5 @@
 //! A number with its derivatives in up to nine parameters: exact Jacobians from the model as it is written.
+#![allow(clippy::suspicious_arithmetic_impl, reason = "the rules of products and quotients")]
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 

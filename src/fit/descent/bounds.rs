@@ -13,6 +13,21 @@ pub struct Bounds<'a> {
     pub longest: &'a [f64],
 }
 
+/// What a step is worked out in, made once for all steps of a descent.
+#[derive(Debug)]
+pub(super) struct Room {
+    pub(super) step: Vec<f64>,
+    pinned: Vec<Option<f64>>,
+    /// Where the step leads to.
+    pub(super) trial: Vec<f64>,
+}
+
+impl Room {
+    pub(super) fn new(parameters: usize) -> Self {
+        Self { step: vec![0.0; parameters], pinned: vec![None; parameters], trial: vec![0.0; parameters] }
+    }
+}
+
 impl Bounds<'_> {
     /// The nearest value in the box.
     pub(super) fn clamp(&self, k: usize, x: f64) -> f64 {
@@ -30,11 +45,13 @@ impl Bounds<'_> {
     }
 
     /// The step within the box: what would leave it is pinned to its face, and the others take that into account.
-    pub(super) fn step(&self, slope: &impl Slope, point: &[f64], damping: f64, step: &mut [f64]) {
-        let mut pinned: Vec<Option<f64>> =
-            (0..point.len()).map(|k| self.is_held(k, point[k], slope.gradient()[k]).then_some(0.0)).collect();
+    pub(super) fn step(&self, slope: &impl Slope, point: &[f64], damping: f64, room: &mut Room) {
+        let Room { step, pinned, .. } = room;
+        for (k, pin) in pinned.iter_mut().enumerate() {
+            *pin = self.is_held(k, point[k], slope.gradient()[k]).then_some(0.0);
+        }
         loop {
-            slope.step(&pinned, damping, step);
+            slope.step(pinned, damping, step);
             let mut is_inside = true;
             for (k, pin) in pinned.iter_mut().enumerate().filter(|(_, pin)| pin.is_none()) {
                 let (down, up) = (self.low[k] - point[k], self.high[k] - point[k]);
@@ -50,18 +67,11 @@ impl Bounds<'_> {
     }
 
     /// A damped step within the box, cut to the longest allowed, and where it leads to.
-    pub(super) fn damped_step(
-        &self,
-        slope: &impl Slope,
-        point: &[f64],
-        damping: f64,
-        step: &mut [f64],
-        trial: &mut [f64],
-    ) {
-        self.step(slope, point, damping, step);
-        for (k, step) in step.iter_mut().enumerate() {
+    pub(super) fn damped_step(&self, slope: &impl Slope, point: &[f64], damping: f64, room: &mut Room) {
+        self.step(slope, point, damping, room);
+        for (k, step) in room.step.iter_mut().enumerate() {
             *step = step.max(-self.longest[k]).min(self.longest[k]);
-            trial[k] = self.clamp(k, point[k] + *step);
+            room.trial[k] = self.clamp(k, point[k] + *step);
         }
     }
 }

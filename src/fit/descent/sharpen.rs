@@ -1,6 +1,6 @@
 //! The last digits: below the rounding of chi-square the gradient still tells where the minimum is.
 
-use super::{Bounds, Descent, Landscape, Slope, look};
+use super::{Bounds, Descent, Landscape, Room, Slope, look};
 
 /// A step must bring the predicted decrease to below this share of what it was.
 const CONTRACTION: f64 = 0.9;
@@ -17,17 +17,17 @@ const MOST_STEPS: usize = 200;
 /// not. For certified values; a measurement has no use for digits that its noise has not.
 pub fn sharpen<L: Landscape>(landscape: &mut L, descent: &mut Descent<L::Slope>, bounds: &Bounds<'_>) {
     let lowest = descent.height;
-    let mut step = vec![0.0; descent.point.len()];
-    let mut trial = descent.point.clone();
+    let mut room = Room::new(descent.point.len());
     for _ in 0..MOST_STEPS {
-        bounds.damped_step(&descent.slope, &descent.point, 0.0, &mut step, &mut trial);
-        if trial == descent.point {
+        bounds.damped_step(&descent.slope, &descent.point, 0.0, &mut room);
+        if room.trial == descent.point {
             return;
         }
         descent.evaluations += 1;
-        let Some((height, slope)) = look(landscape, &trial) else { return };
-        bounds.step(&slope, &trial, 0.0, &mut step);
-        let left = slope.decrease(&step);
+        let Some((height, slope)) = look(landscape, &room.trial) else { return };
+        let trial = room.trial.clone();
+        bounds.step(&slope, &trial, 0.0, &mut room);
+        let left = slope.decrease(&room.step);
         let is_nearer = left <= CONTRACTION * descent.left;
         if !is_nearer || height.chi_square > lowest.chi_square + ROUNDINGS * lowest.noise.max(height.noise) {
             return;
