@@ -159,7 +159,10 @@ fn a_factor_is_y_over_e_over_what_the_reference_received() {
         else {
             return Ok(());
         };
-        prop_assert_eq!(factor.value, plain.value / 0.5);
+        let expected = plain.value / 0.5;
+        // Below the normal numbers a product that is rounded once more may differ by the smallest number there is.
+        let spacing = if expected < f64::MIN_POSITIVE { 2.0 * f64::from_bits(1) } else { 0.0 };
+        prop_assert!((factor.value - expected).abs() <= spacing, "{} {expected}", factor.value);
         Ok(())
     };
     runner().run(&(geometry(), specular()), check).unwrap();
