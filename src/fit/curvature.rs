@@ -50,8 +50,9 @@ impl Columns {
         let (roughness, m) = (point.roughness(), point.index_minus_one());
         self.d.clear();
         self.d_by_r.clear();
+        let lobe = set.distribution.lobe(roughness);
         for segment in &set.segments {
-            let value = set.distribution.evaluate(&segment.half, roughness);
+            let value = lobe.evaluate(&segment.half);
             self.d.push(value.value);
             self.d_by_r.push(value.by_log_roughness);
         }

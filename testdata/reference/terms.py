@@ -6,10 +6,12 @@ cost nothing. Every input is an IEEE double and is taken as exact. Run: python3 
 
 import random
 
+from gaussian_integral import integral
 from mpmath import mp, mpf, asin, atan2, cos, degrees, exp, log, pi, sin, sqrt, tan
 
-mp.dps = 120  # 60 are left where the textbook form cancels
+mp.dps = 120  # after the import, which sets its own; 60 are left where the textbook form cancels
 DISTRIBUTIONS = ["gaussian-half-height", "gaussian", "torrance-sparrow-1967", "beckmann", "trowbridge-reitz"]
+NORMS = {}
 DENOMINATORS = ["cos-theta-i", "cos-theta-v", "cos-i-cos-v"]
 
 
@@ -32,6 +34,13 @@ def distribution(name, phi, r):
         u = (degrees(phi) / r) ** 2
         d = exp(-u)
         return d, d * 2 * u / r, d * 2 * u / r
+    if name == "gaussian-normalised":
+        if r not in NORMS:
+            n = integral(r, 0)
+            NORMS[r] = (n * r**2, 2 * integral(r, 2) / n)
+        u, (norm, slope) = (phi / r) ** 2, NORMS[r]
+        d = exp(-u) / norm
+        return d, d * (2 * u - slope) / r, d * (2 * u + slope) / r
     if name == "beckmann":
         u = (tan(phi) / r) ** 2
         d = exp(-u) / (pi * r**2 * cos(phi) ** 4)
@@ -99,6 +108,10 @@ def main():
         r = 10.0 ** rng.uniform(-3, 0.3) * (57.0 if name == "torrance-sparrow-1967" else 1.0)
         n = 1.0 + 10.0 ** rng.choice([rng.uniform(-12, -3), rng.uniform(-1, 0.3)])
         row(*geometry(rng), name, denominator, r, n)
+    rng = random.Random(20260103)
+    for i in range(150):
+        n = 1.0 + 10.0 ** rng.choice([rng.uniform(-12, -3), rng.uniform(-1, 0.3)])
+        row(*geometry(rng), "gaussian-normalised", DENOMINATORS[i % 3], 10.0 ** rng.uniform(-3, 0.3), n)
 
 
 main()
