@@ -12,7 +12,9 @@
 //! in the set, sorted by half-vector angle, so that an evaluation needs one D per distinct angle and one F per distinct
 //! half angle.
 
+mod comparison;
 mod curvature;
+pub mod design;
 mod geometry_set;
 mod identifiability;
 mod left_out;
@@ -24,6 +26,7 @@ mod separability;
 mod solve;
 mod statistics;
 
+pub use comparison::{Compared, Comparison, Criterion, Difference, Indistinguishable, Shape, compare_measurement};
 pub use geometry_set::{GeometrySet, SetError};
 pub use left_out::LeftOut;
 pub use measurement::{FitError, FitOptions, fit_measurement};
