@@ -24,9 +24,8 @@ fn document(bands: usize) -> Document {
     let mut random = Random::new(7);
     let truth = Truth { albedo: 0.6, intensity: 8.0, roughness: 0.2, index_minus_one: 0.5 };
     let columns: Vec<(Vec<f64>, Vec<f64>)> = (0..bands).map(|_| measure(&truth, &grid, 0.01, &mut random)).collect();
-    let table = |of: fn(&(Vec<f64>, Vec<f64>)) -> &Vec<f64>| {
-        Array2::from_shape_fn((grid.len(), bands), |(row, band)| of(&columns[band])[row])
-    };
+    let values = Array2::from_shape_fn((grid.len(), bands), |(row, band)| columns[band].0[row]);
+    let sigma = Array2::from_shape_fn((grid.len(), bands), |(row, band)| columns[band].1[row]);
     let kind = if bands == 1 { QuantityKind::BandRadianceFactor } else { QuantityKind::RadianceFactor };
     let mut quantity = Quantity::unstated(kind);
     quantity.reference = Reference::None;
@@ -37,16 +36,9 @@ fn document(bands: usize) -> Document {
         EmissionAxis::Wavelengths(WavelengthAxis::new(nm, Bandpass::Unstated).unwrap())
     };
     let acquisitions = grid.iter().zip(0..).map(|(geometry, order)| Acquisition::at(Some(*geometry), order)).collect();
-    let mut measurement = Measurement::new(
-        Id::new("scan").unwrap(),
-        Role::Sample,
-        quantity,
-        emission,
-        acquisitions,
-        table(|column| &column.0),
-    );
-    measurement.uncertainty =
-        Uncertainty { standard: Some(table(|column| &column.1).into_shared()), ..Uncertainty::default() };
+    let mut measurement =
+        Measurement::new(Id::new("scan").unwrap(), Role::Sample, quantity, emission, acquisitions, values);
+    measurement.uncertainty = Uncertainty { standard: Some(sigma.into_shared()), ..Uncertainty::default() };
     Document { measurements: vec![measurement], ..Document::default() }
 }
 

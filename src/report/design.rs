@@ -23,7 +23,9 @@ const LINES: [Color; 6] = [
     Color::Rgb(0xe6, 0x9f, 0x00),
     Color::Rgb(0x56, 0xb4, 0xe9),
 ];
-/// More numbers than this cannot be read beside their dots.
+/// Numbers in their dots.
+const PAPER: Color = Color::Rgb(0xff, 0xff, 0xff);
+/// More numbers than this say nothing.
 const NUMBERED: usize = 30;
 
 /// What the figure of a design shows.
@@ -103,9 +105,10 @@ fn draw_plane(canvas: &mut Canvas, area: Area, picture: &DesignPicture) -> Optio
     for (k, geometry) in picture.added.iter().enumerate() {
         let (i, v) = place(geometry);
         let (x, y) = frame.point(i, v);
-        canvas.dot((x, y), 5.0, FITTED);
+        canvas.dot((x, y), 6.0, FITTED);
         if k < NUMBERED {
-            canvas.text((x + 7.0, y - 5.0), &(k + 1).to_string(), Style::new(TICK_SIZE, TextAnchor::Start));
+            let inside = Style { colour: PAPER, ..Style::new(8, TextAnchor::Middle).bold() };
+            canvas.text((x, y + 2.9), &(k + 1).to_string(), inside);
         }
     }
     let labels = Labels { title: "", subtitle: "", x: "theta_i (degrees)", y: "theta_v (degrees), mirror at theta_i" };

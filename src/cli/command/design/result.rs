@@ -155,13 +155,12 @@ impl DesignResult {
     pub(super) fn subtitle(&self) -> String {
         let parameters: Vec<String> =
             self.parameters.iter().map(|one| format!("{} {}", one.name, shown(one.guess))).collect();
-        format!(
-            "{}; noise {} %, floor {}; optimised: {}",
-            parameters.join(", "),
-            100.0 * self.noise,
-            self.floor,
-            self.optimise
-        )
+        let (noise, floor) = (100.0 * self.noise, self.floor);
+        format!("{}; noise {noise} %, floor {floor}; chosen for {}", parameters.join(", "), self.goal())
+    }
+
+    fn goal(&self) -> String {
+        if self.optimise == "d" { "all parameters (D-optimal)".to_owned() } else { self.optimise.clone() }
     }
 
     pub(super) fn text(&self) -> String {
@@ -205,9 +204,9 @@ impl DesignResult {
         let names = self.parameters.iter().map(|one| one.name.rsplit_once('.').map_or("", |(_, name)| name));
         let columns: Vec<String> = names.map(|name| format!("{name:>18}")).collect();
         let angles = if self.is_signed() { "theta_i theta_v" } else { "theta_i phi_i theta_v phi_v" };
-        let goal = if self.optimise == "d" { "all parameters (D-optimal)".to_owned() } else { self.optimise.clone() };
         format!(
-            "  next geometries for {goal}, of {} candidates; sigma in % with each\n  {:>4}  {angles:<28}{}",
+            "  next geometries for {}, of {} candidates; sigma in % with each\n  {:>4}  {angles:<28}{}",
+            self.goal(),
             self.candidates,
             "#",
             columns.join("")
@@ -251,6 +250,8 @@ fn shown(value: f64) -> String {
 
 fn with_percent(sigma: Option<f64>, relative_to: f64) -> String {
     match sigma {
+        // Beyond its own size nothing is known of it; a sentence says so with the number.
+        Some(sigma) if sigma > relative_to => "not determined".to_owned(),
         Some(sigma) => format!("{} ({} %)", shown(sigma), shown(100.0 * sigma / relative_to)),
         None => "undetermined".to_owned(),
     }
