@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used)]
 
 use bbrf::quantity::{Geometry, Reference, SignHabit};
-use bbrf::terms::{Denominator, Distribution, Term, TorranceSparrow, Undefined};
+use bbrf::terms::{Denominator, Distribution, Term, TorranceSparrow, Undefined, gaussian_integral};
 
 fn shiny(distribution: Distribution, denominator: Denominator) -> Term {
     Term::TorranceSparrow(TorranceSparrow {
@@ -41,4 +41,45 @@ fn a_term_reads_from_the_json_of_the_command_line() {
         denominator: Denominator::CosThetaI,
     };
     assert!(Term::TorranceSparrow(index_one).check().unwrap_err().to_string().contains("refractive_index"));
+}
+
+/// `testdata/reference/gaussian_integral.py` makes the table, by adaptive quadrature with 60 digits.
+#[test]
+fn the_norm_of_the_gaussian_keeps_its_digits() {
+    let text = include_str!("../testdata/reference/gaussian_integral.csv");
+    let mut worst = [0.0_f64; 2];
+    for line in text.lines().skip(2) {
+        let fields: Vec<f64> = line.split(',').map(|field| field.parse().unwrap()).collect();
+        let found = gaussian_integral(fields[0]);
+        // Below the smallest normal number the quotient alone has digits.
+        let pairs = [(found.over_square * fields[0] * fields[0], fields[1]), (found.by_log_width, fields[2])];
+        for (k, (found, expected)) in pairs.into_iter().enumerate() {
+            worst[k] = worst[k].max((found / expected - 1.0).abs());
+        }
+        assert!(worst[0] < 2e-15 && worst[1] < 2e-14, "{line}: {found:?}");
+    }
+    println!("largest relative error of N: {:.1e}, of d(ln N)/d(ln w): {:.1e}", worst[0], worst[1]);
+    let tiny = gaussian_integral(1e-170);
+    assert_eq!((tiny.value, tiny.over_square), (0.0, std::f64::consts::PI));
+}
+
+/// D cos(phi) over the hemisphere, in polar coordinates about the normal.
+#[test]
+fn every_form_with_a_norm_integrates_to_one() {
+    for distribution in [Distribution::GaussianNormalised, Distribution::Beckmann, Distribution::TrowbridgeReitz] {
+        for roughness in [0.03, 0.2, 0.9] {
+            let steps = 400_000;
+            let width = 90.0 / f64::from(steps);
+            let sum: f64 = (0..steps)
+                .map(|step| {
+                    // L = V at the polar angle is the half vector.
+                    let theta = (f64::from(step) + 0.5) * width;
+                    let half = Geometry::from_degrees(theta, 0.0, theta, 0.0).unwrap().half_angles();
+                    distribution.evaluate(&half, roughness).value * half.cos_phi * half.sin_phi
+                })
+                .sum();
+            let integral = sum * std::f64::consts::TAU * width.to_radians();
+            assert!((integral - 1.0).abs() < 1e-6, "{distribution} {roughness}: {integral}");
+        }
+    }
 }

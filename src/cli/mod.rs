@@ -6,6 +6,7 @@
 
 mod command;
 mod exit;
+mod model_source;
 mod opened;
 mod output;
 mod overwrite;
@@ -28,6 +29,7 @@ enum Command {
     Import(Box<command::import::Arguments>),
     Fit(command::fit::Arguments),
     Eval(command::eval::Arguments),
+    Design(Box<command::design::Arguments>),
     Report(command::report::Arguments),
     Info(command::info::Arguments),
     Validate(command::validate::Arguments),
@@ -58,6 +60,7 @@ pub fn run() -> ExitCode {
         Command::Import(arguments) => command::import::run(&arguments),
         Command::Fit(arguments) => command::fit::run(&arguments),
         Command::Eval(arguments) => command::eval::run(&arguments),
+        Command::Design(arguments) => command::design::run(&arguments),
         Command::Report(arguments) => command::report::run(&arguments),
         Command::Info(arguments) => command::info::run(&arguments),
         Command::Validate(arguments) => command::validate::run(&arguments),

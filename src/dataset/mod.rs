@@ -25,6 +25,7 @@ mod residual;
 mod sample;
 #[doc(hidden)]
 pub mod tree;
+mod twin;
 
 pub use anonymise::{Anonymised, Suspect};
 pub use calibration::Calibration;
@@ -43,3 +44,4 @@ pub use provenance::{Assumption, InputFile, Notice, Provenance, Receipt, Step};
 pub use reduce::{ReduceError, Reduced, Reduction, UnknownReduction, reduce};
 pub use residual::{Prediction, TermsError, predict, residuals};
 pub use sample::{Sample, Symmetry, WhiteReference};
+pub use twin::{NoTwin, with_distribution};

@@ -42,8 +42,9 @@ impl Columns {
         for column in [&mut self.specular, &mut self.by_r, &mut self.by_m] {
             column.resize(set.points(), 0.0);
         }
+        let lobe = set.distribution.lobe(roughness);
         for segment in &set.segments {
-            let d = set.distribution.evaluate(&segment.half, roughness);
+            let d = lobe.evaluate(&segment.half);
             let range = segment.start..segment.end;
             let points = set.masked[range.clone()].iter().zip(&set.half_of[range.clone()]);
             let columns =

@@ -4,7 +4,7 @@ use ndarray::Array2;
 
 use super::samples::LANES;
 use crate::quantity::{Geometry, HalfAngles, Reference};
-use crate::terms::{Denominator, Distribution, Undefined, diffuse_factor, fresnel, specular_factor};
+use crate::terms::{Denominator, Distribution, Lobe, Undefined, diffuse_factor, fresnel, specular_factor};
 
 /// Roughness nodes of the starting grid.
 pub(super) const ROUGHNESS_NODES: usize = 12;
@@ -197,8 +197,9 @@ impl Grid {
         let roughness: Vec<f64> = (0..ROUGHNESS_NODES)
             .map(|node| distribution.roughness_from_half_width(narrowest * (ratio * node as f64).exp()))
             .collect();
+        let lobes: Vec<Lobe> = roughness.iter().map(|roughness| distribution.lobe(*roughness)).collect();
         let table = Array2::from_shape_fn((ROUGHNESS_NODES, segments.len()), |(node, k)| {
-            distribution.evaluate(&segments[k].half, roughness[node]).value
+            lobes[node].evaluate(&segments[k].half).value
         });
         let fresnel_table = INDEX_NODES.map(|m| halves.iter().map(|half| fresnel(half, m).value).collect::<Vec<f64>>());
         let specular = Array2::from_shape_fn((INDEX_NODES.len(), masked.len()), |(node, point)| {

@@ -119,6 +119,7 @@ mod tests {
 
     /// mpmath 1.3 in 60 digits: `exp(-z*z/2)/sqrt(2*pi)/c` and `log(c)` of `c = erfc(-z/sqrt(2))/2`.
     #[test]
+    #[allow(clippy::excessive_precision, clippy::approx_constant, reason = "as the reference prints them")]
     fn the_tail_of_the_normal_distribution_keeps_its_digits() {
         for (z, ratio, log) in [
             (-1e6, 1_000_000.000_001, -500_000_000_014.734_449),

@@ -108,9 +108,9 @@ pub enum FitError {
 
 /// The terms of a fit: at most one diffuse, at most one specular.
 #[derive(Debug, Clone, Copy)]
-struct Choice {
-    diffuse: Option<TermKind>,
-    specular: bool,
+pub(super) struct Choice {
+    pub(super) diffuse: Option<TermKind>,
+    pub(super) specular: bool,
 }
 
 impl Choice {
@@ -149,19 +149,7 @@ pub fn fit_measurement(
     options: &FitOptions,
 ) -> Result<Model, FitError> {
     let name = || measurement.id.to_string();
-    let kind = measurement.quantity.kind;
-    if matches!(kind, QuantityKind::Brdf | QuantityKind::Brrdf) {
-        return Err(FitError::NoFactor { measurement: name(), kind });
-    }
-    let choice = Choice::new(&options.terms, measurement.quantity.part)?;
-    let mut data = reduce(document, measurement, options.reduction)?;
-    let (reference, assumed) = match (data.reference, options.assume_reference) {
-        (Reference::Unstated, Some(assumed)) => (assumed, true),
-        (stated, Some(asked)) if asked != stated => {
-            return Err(FitError::ReferenceStated { measurement: name(), stated, asked });
-        }
-        (stated, _) => (stated, false),
-    };
+    let Prepared { choice, mut data, reference, assumed } = prepared(document, measurement, options)?;
     let geometry_error = |source| FitError::Geometry { measurement: name(), source };
     let data_error = |source| FitError::Data { measurement: name(), source };
     let (set, fit) = fit_reduced(&data, &reference, choice.terms(), options, geometry_error, data_error)?;
@@ -205,6 +193,38 @@ pub fn fit_measurement(
     let parameters = data.values.len() - fit.left_out.total() - fit.degrees_of_freedom as usize;
     model.residuals = residuals(&model, &data, parameters)?.1;
     Ok(model)
+}
+
+/// What is fitted: the terms, the numbers, and the reference that they are relative to.
+pub(super) struct Prepared {
+    pub(super) choice: Choice,
+    pub(super) data: Reduced,
+    pub(super) reference: Reference,
+    /// True where the reference was assumed on request.
+    pub(super) assumed: bool,
+}
+
+/// Reduces a measurement for a fit.
+pub(super) fn prepared(
+    document: &Document,
+    measurement: &Measurement,
+    options: &FitOptions,
+) -> Result<Prepared, FitError> {
+    let name = || measurement.id.to_string();
+    let kind = measurement.quantity.kind;
+    if matches!(kind, QuantityKind::Brdf | QuantityKind::Brrdf) {
+        return Err(FitError::NoFactor { measurement: name(), kind });
+    }
+    let choice = Choice::new(&options.terms, measurement.quantity.part)?;
+    let data = reduce(document, measurement, options.reduction)?;
+    let (reference, assumed) = match (data.reference, options.assume_reference) {
+        (Reference::Unstated, Some(assumed)) => (assumed, true),
+        (stated, Some(asked)) if asked != stated => {
+            return Err(FitError::ReferenceStated { measurement: name(), stated, asked });
+        }
+        (stated, _) => (stated, false),
+    };
+    Ok(Prepared { choice, data, reference, assumed })
 }
 
 /// How the numbers were formed, for the model's id: a reduction to `none` keeps every wavelength.

@@ -13,8 +13,10 @@
 //! half angle.
 
 mod columns;
+mod comparison;
 mod curvature;
 pub mod descent;
+pub mod design;
 mod geometry_set;
 mod identifiability;
 mod left_out;
@@ -33,6 +35,7 @@ mod solve;
 mod starts;
 mod statistics;
 
+pub use comparison::{Compared, Comparison, Criterion, Difference, Indistinguishable, Shape, compare_measurement};
 pub use curvature::Share;
 pub use geometry_set::{GeometrySet, SetError};
 pub use left_out::LeftOut;

@@ -34,6 +34,7 @@ mod gather;
 mod geometry_csv;
 mod keys;
 mod manifest;
+mod manifest_form;
 mod manifest_toml;
 mod mean;
 mod names;
@@ -69,6 +70,7 @@ pub use dialect::Dialect;
 pub use error::{Fault, ImportError};
 pub use geometry_csv::{GeometryRow, read_geometries};
 pub use keys::{KEYS, Settings};
+pub use manifest_form::scan_manifest;
 pub use source::MAX_FILE_BYTES;
 
 use crate::dataset::{Document, Measurement, Place, Role};

@@ -1,7 +1,7 @@
-//! D: the distribution of microfacet slopes, in the five forms that the literature calls by that letter.
+//! D: the distribution of microfacet slopes, in the six forms that the literature calls by that letter.
 
-use crate::quantity::HalfAngles;
-use crate::quantity::named;
+use super::gaussian_integral::{GaussianIntegral, gaussian_integral};
+use crate::quantity::{HalfAngles, named};
 
 named! {
     /// The form of D and with it the meaning of `roughness`, which grows with roughness in all of them.
@@ -12,6 +12,8 @@ named! {
         Gaussian = "gaussian",
         /// exp(-(phi_deg / r)^2); r = 1/c of Torrance and Sparrow 1967, degrees.
         TorranceSparrow1967 = "torrance-sparrow-1967",
+        /// exp(-phi^2 / r^2) / N(r), N(r) the integral of exp(-phi^2 / r^2) cos(phi) over the hemisphere; r in rad.
+        GaussianNormalised = "gaussian-normalised",
         /// exp(-tan^2 phi / r^2) / (pi r^2 cos^4 phi); r = m, the r.m.s. slope times sqrt(2).
         Beckmann = "beckmann",
         /// r^2 / (pi (sin^2 phi + r^2 cos^2 phi)^2), "GGX"; r = alpha.
@@ -22,7 +24,7 @@ named! {
 /// A value of D with its derivative in the logarithm of the roughness (finite where that in r overflows).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DistributionValue {
-    /// D, sr-1 for the normalised forms, dimensionless for the three Gaussians.
+    /// D, sr-1 for the normalised forms, dimensionless for the three Gaussians without a norm.
     pub value: f64,
     /// dD / d(ln r).
     pub by_log_roughness: f64,
@@ -33,7 +35,7 @@ impl Distribution {
     #[must_use]
     pub const fn roughness_unit(self) -> &'static str {
         match self {
-            Self::GaussianHalfHeight | Self::Gaussian => "rad",
+            Self::GaussianHalfHeight | Self::Gaussian | Self::GaussianNormalised => "rad",
             Self::TorranceSparrow1967 => "degree",
             Self::Beckmann | Self::TrowbridgeReitz => "1",
         }
@@ -46,24 +48,62 @@ impl Distribution {
         let width = half_width / std::f64::consts::LN_2.sqrt();
         match self {
             Self::GaussianHalfHeight => half_width,
-            Self::Gaussian | Self::Beckmann => width,
+            Self::Gaussian | Self::GaussianNormalised | Self::Beckmann => width,
             Self::TorranceSparrow1967 => width.to_degrees(),
             // 1/(1 + x^2/r^2)^2 is one half at x = 0.6436 r.
             Self::TrowbridgeReitz => half_width / 0.643_594_252_905_582_6,
         }
     }
 
-    /// D and its derivative at a half-vector angle, for a positive `roughness` in this form's unit.
+    /// The width w, rad, of the Gaussian exp(-phi^2 / w^2) that this form is at a roughness, up to a factor; `None` for a
+    /// form that is no Gaussian of the angle.
+    #[must_use]
+    pub fn gaussian_width(self, roughness: f64) -> Option<f64> {
+        match self {
+            Self::GaussianHalfHeight => Some(roughness / std::f64::consts::LN_2.sqrt()),
+            Self::Gaussian | Self::GaussianNormalised => Some(roughness),
+            Self::TorranceSparrow1967 => Some(roughness.to_radians()),
+            Self::Beckmann | Self::TrowbridgeReitz => None,
+        }
+    }
+
+    /// This form at one roughness, in its unit.
+    #[must_use]
+    pub fn lobe(self, roughness: f64) -> Lobe {
+        let norm = (self == Self::GaussianNormalised).then(|| gaussian_integral(roughness));
+        Lobe { distribution: self, roughness, norm }
+    }
+
+    /// D and its derivative at a half-vector angle, for a positive `roughness` in this form's unit; as
+    /// [`Lobe::evaluate`].
+    #[must_use]
+    pub fn evaluate(self, half: &HalfAngles, roughness: f64) -> DistributionValue {
+        self.lobe(roughness).evaluate(half)
+    }
+}
+
+/// A form of D at one roughness, with what depends on the roughness alone.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Lobe {
+    distribution: Distribution,
+    roughness: f64,
+    norm: Option<GaussianIntegral>,
+}
+
+impl Lobe {
+    /// D and its derivative at a half-vector angle.
     ///
     /// Relative error of a few 1e-15 times 1 + |ln D|; where D underflows both are exactly 0, never NaN.
     #[must_use]
-    pub fn evaluate(self, half: &HalfAngles, roughness: f64) -> DistributionValue {
-        match self {
-            Self::GaussianHalfHeight => gaussian(half.phi / roughness, std::f64::consts::LN_2),
-            Self::Gaussian => gaussian(half.phi / roughness, 1.0),
-            Self::TorranceSparrow1967 => gaussian(half.phi.to_degrees() / roughness, 1.0),
-            Self::Beckmann => beckmann(half, roughness),
-            Self::TrowbridgeReitz => trowbridge_reitz(half, roughness),
+    pub fn evaluate(&self, half: &HalfAngles) -> DistributionValue {
+        let roughness = self.roughness;
+        match (self.distribution, self.norm) {
+            (Distribution::GaussianHalfHeight, _) => gaussian(half.phi / roughness, std::f64::consts::LN_2),
+            (Distribution::GaussianNormalised, Some(norm)) => normalised(half.phi / roughness, roughness, &norm),
+            (Distribution::Gaussian | Distribution::GaussianNormalised, _) => gaussian(half.phi / roughness, 1.0),
+            (Distribution::TorranceSparrow1967, _) => gaussian(half.phi.to_degrees() / roughness, 1.0),
+            (Distribution::Beckmann, _) => beckmann(half, roughness),
+            (Distribution::TrowbridgeReitz, _) => trowbridge_reitz(half, roughness),
         }
     }
 }
@@ -74,6 +114,17 @@ fn gaussian(ratio: f64, factor: f64) -> DistributionValue {
     // An infinite exponent times an underflown exponential is 0, not NaN.
     let by_log_roughness = if value == 0.0 { 0.0 } else { 2.0 * exponent * value };
     DistributionValue { value, by_log_roughness }
+}
+
+fn normalised(ratio: f64, roughness: f64, norm: &GaussianIntegral) -> DistributionValue {
+    let exponent = ratio * ratio;
+    // The square root of D, as below; N is r^2 times `over_square`, whose square r^2 leaves the range before D does.
+    let root = (-exponent / 2.0).exp() / roughness / norm.over_square.sqrt();
+    if root == 0.0 || root.is_nan() {
+        return DistributionValue { value: 0.0, by_log_roughness: 0.0 };
+    }
+    let value = root * root;
+    DistributionValue { value, by_log_roughness: value * (2.0 * exponent - norm.by_log_width) }
 }
 
 fn beckmann(half: &HalfAngles, roughness: f64) -> DistributionValue {

@@ -9,14 +9,17 @@ mod albedo;
 mod denominator;
 mod distribution;
 mod fresnel;
+mod gaussian_integral;
 mod masking;
 mod parameter;
+mod quadrature;
 mod term;
 mod torrance_sparrow;
 
 pub use denominator::Denominator;
-pub use distribution::{Distribution, DistributionValue};
+pub use distribution::{Distribution, DistributionValue, Lobe};
 pub use fresnel::{FresnelValue, fresnel};
+pub use gaussian_integral::{GaussianIntegral, gaussian_integral};
 pub use masking::{masking, masking_over};
 pub use parameter::{ALBEDO, INTENSITY, LUMINESCENT_FACTOR, Parameter, REFRACTIVE_INDEX, ROUGHNESS};
 pub use term::{Evaluation, InvalidParameter, Term, diffuse_factor, specular_factor};

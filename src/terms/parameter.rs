@@ -47,7 +47,8 @@ pub const INTENSITY: Parameter = Parameter {
     lower: 0.0,
     lower_excluded: false,
     linear: true,
-    meaning: "specular intensity coefficient (eq. 4); not comparable across roughness for the Gaussian distributions",
+    meaning: "specular intensity coefficient (eq. 4); not comparable across roughness for the three Gaussian \
+              distributions without a norm",
 };
 
 /// Roughness of the named distribution.

@@ -1,4 +1,7 @@
-//! `bbrf convert`: a measurement in another quantity, beside the one it was made of.
+//! `bbrf convert`: a measurement in another quantity, or a model in another form of the same function, beside the one it
+//! was made of.
+
+mod model;
 
 use std::path::PathBuf;
 
@@ -14,10 +17,13 @@ use crate::cli::overwrite::refuse_overwriting;
 use crate::container::{self, Opened};
 use crate::dataset::{Measurement, Step, Target, convert};
 use crate::quantity::{Basis, QuantityKind, Reference};
+use crate::terms::Distribution;
+pub(crate) use model::ConvertModelResult;
 
-/// Add a measurement in another quantity, reference or basis to a copy of the file; refuses what it lacks.
+/// Add a measurement in another quantity, reference or basis, or a model in another distribution, to a copy of the file;
+/// refuses what is not exact.
 #[derive(Debug, clap::Args)]
-#[command(group = clap::ArgGroup::new("into").required(true).multiple(true).args(["to", "reference", "basis"]))]
+#[command(group = clap::ArgGroup::new("into").required(true).multiple(true).args(["to", "reference", "basis", "distribution"]))]
 pub(crate) struct Arguments {
     /// The .bbrf file
     file: PathBuf,
@@ -33,6 +39,13 @@ pub(crate) struct Arguments {
     /// The measurement, by id [default: the only one, or the only one that is a factor]
     #[arg(long, value_name = "ID")]
     measurement: Option<String>,
+    /// Another width or norm of a model's Gaussian: gaussian-half-height, gaussian, torrance-sparrow-1967,
+    /// gaussian-normalised; with its covariance, exactly
+    #[arg(long, conflicts_with_all = ["to", "reference", "basis", "measurement"])]
+    distribution: Option<Distribution>,
+    /// The model for --distribution, by id [default: the only one]
+    #[arg(long, value_name = "ID", requires = "distribution")]
+    model: Option<String>,
     /// Write the new file here; the old one is never changed
     #[arg(short, long)]
     output: PathBuf,
@@ -67,6 +80,9 @@ pub(crate) fn run(arguments: &Arguments) -> CommandResult {
             help = "take it out, or write it as numbers or texts",
             "{name}: {path} would be lost: values of a type that is not written here"
         ));
+    }
+    if let Some(into) = arguments.distribution {
+        return model::run(arguments, &mut document, &foreign, into);
     }
     let source = chosen(&document, arguments.measurement.as_deref())?;
     let (from, before) = (source.id.to_string(), described(source));

@@ -4,20 +4,15 @@ use std::path::PathBuf;
 
 use miette::miette;
 use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 
 use crate::cli::exit::{CommandResult, Outcome};
-use crate::cli::opened::open;
+use crate::cli::model_source::{Loaded, ValueMeaning, load};
 use crate::cli::output::{print_json, print_message, print_text};
-use crate::dataset::{Document, Model, predict};
+use crate::dataset::predict;
 use crate::import::{GeometryRow, read_geometries};
 use crate::quantity::Reference;
 use crate::terms::{Factors, Term, TermKind, TorranceSparrow};
-
-/// What `value` is.
-const FACTOR_MEANING: &str = "Y/E, the sum of the elastic terms: pi times the radiance over the irradiance of a surface across \
-    the beam, without a reference";
-const OTHER_MEANING: &str = "the sum of the elastic terms in the unit of the fitted number, which is no ratio";
 
 /// Evaluate a model: Y/E of its elastic terms, one row per geometry
 ///
@@ -45,35 +40,12 @@ pub(crate) struct Arguments {
     json: bool,
 }
 
-/// A model as JSON.
-#[derive(Debug, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub(crate) struct ModelJson {
-    /// The terms.
-    terms: Vec<Term>,
-}
-
 /// What `--json` prints.
 #[derive(Debug, Serialize, JsonSchema)]
 pub(crate) struct EvalResult {
     /// What `value` is.
     value: ValueMeaning,
     rows: Vec<EvalRow>,
-}
-
-/// What the column `value` holds.
-#[derive(Debug, Serialize, JsonSchema)]
-struct ValueMeaning {
-    /// In words.
-    meaning: String,
-    /// The reference it is relative to: always `none`.
-    reference: String,
-    /// Its unit, `1` for none.
-    unit: String,
-    /// How a spectrum became the number that the model was fitted to, as in `band:500-620`; `null` for a model in JSON.
-    reduction: Option<String>,
-    /// Wavelengths of the model's measurement, nm, at which it has no value.
-    without_model_nm: Vec<f64>,
 }
 
 /// One geometry and emission value.
@@ -102,17 +74,8 @@ struct EvalRow {
     signed: Option<(f64, f64)>,
 }
 
-/// Terms per emission value, with its wavelength where there are several.
-type Bands = Vec<(Option<f64>, Vec<Term>)>;
-
-/// A model and what its values mean.
-struct Loaded {
-    bands: Bands,
-    value: ValueMeaning,
-}
-
 pub(crate) fn run(arguments: &Arguments) -> CommandResult {
-    let Loaded { bands, value } = load(&arguments.model)?;
+    let Loaded { bands, value, .. } = load(&arguments.model)?;
     let specular = match (arguments.factors, bands.first()) {
         (true, Some((_, terms))) => Some(only_specular(terms)?),
         _ => None,
@@ -144,76 +107,6 @@ pub(crate) fn run(arguments: &Arguments) -> CommandResult {
         print_text(&csv(&rows, arguments.factors))?;
     }
     Ok(if undefined == 0 { Outcome::Done } else { Outcome::Failed })
-}
-
-fn load(model: &str) -> Result<Loaded, miette::Report> {
-    let (path, id) = match model.rsplit_once('#') {
-        Some((path, id)) => (path, Some(id)),
-        None => (model, None),
-    };
-    let bytes = std::fs::read(path).map_err(|error| miette!("{path}: cannot be read: {error}"))?;
-    if bytes.first().is_some_and(|first| first.is_ascii_whitespace() || *first == b'{') {
-        return from_json(path, &bytes);
-    }
-    let document = open(path.as_ref())?.document;
-    let ids = || document.models.iter().map(|m| m.id.to_string()).collect::<Vec<_>>().join(", ");
-    let model = match (id, document.models.as_slice()) {
-        (Some(id), _) => {
-            document.model(id).ok_or_else(|| miette!("{path}: no model `{id}`; the file holds: {}", ids()))?
-        }
-        (None, [one]) => one,
-        (None, []) => return Err(miette!("{path}: holds no model; make one with `bbrf fit {path} -o OUT`")),
-        (None, _) => return Err(miette!("{path}: holds several models ({}); name one as {path}#ID", ids())),
-    };
-    let nm = model.emission.wavelengths();
-    let bands = (0..model.emission.len())
-        .map(|emission| {
-            let terms = model.terms_at(emission).map_err(|error| miette!("{path}, model `{}`: {error}", model.id))?;
-            Ok((nm.map(|nm| nm[emission]), terms))
-        })
-        .collect::<Result<Bands, miette::Report>>()?;
-    Ok(Loaded { bands, value: meaning(&document, model) })
-}
-
-fn meaning(document: &Document, model: &Model) -> ValueMeaning {
-    let measurement = document.measurement(model.measurement.as_str());
-    let measured = measurement.and_then(|one| one.emission.wavelengths()).unwrap_or(&[]);
-    let without = match model.emission.wavelengths() {
-        Some(nm) => measured.iter().copied().filter(|one| !nm.contains(one)).collect(),
-        None => Vec::new(),
-    };
-    let is_factor = measurement.is_none_or(|one| one.quantity.kind.is_factor());
-    let meaning = if is_factor { FACTOR_MEANING } else { OTHER_MEANING };
-    ValueMeaning {
-        meaning: meaning.to_owned(),
-        reference: Reference::None.to_string(),
-        unit: model.unit.clone(),
-        reduction: Some(model.reduction.clone()),
-        without_model_nm: without,
-    }
-}
-
-fn from_json(path: &str, bytes: &[u8]) -> Result<Loaded, miette::Report> {
-    let model: ModelJson = serde_json::from_slice(bytes).map_err(|error| {
-        miette!(
-            "{path}: {error}; expected {{\"terms\": [{{\"kind\": \"lambertian\", \"albedo\": 0.8}}, ...]}} with the terms \
-             of `bbrf schema eval-model`"
-        )
-    })?;
-    for term in &model.terms {
-        term.check().map_err(|error| miette!("{path}: {error}"))?;
-    }
-    if model.terms.is_empty() {
-        return Err(miette!("{path}: `terms` is empty; a model needs at least one term"));
-    }
-    let value = ValueMeaning {
-        meaning: FACTOR_MEANING.to_owned(),
-        reference: Reference::None.to_string(),
-        unit: "1".to_owned(),
-        reduction: None,
-        without_model_nm: Vec::new(),
-    };
-    Ok(Loaded { bands: vec![(None, model.terms)], value })
 }
 
 fn only_specular(terms: &[Term]) -> Result<TorranceSparrow, miette::Report> {

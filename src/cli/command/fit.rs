@@ -1,5 +1,6 @@
 //! `bbrf fit`: fits the terms to a measurement of each file.
 
+mod compare;
 mod outputs;
 
 use std::collections::BTreeMap;
@@ -39,7 +40,7 @@ pub(crate) struct Arguments {
     /// Terms, separated by commas [default: luminescent for a luminescent factor, else lambertian,torrance-sparrow]
     #[arg(long, value_delimiter = ',')]
     terms: Vec<TermKind>,
-    /// Form of D: gaussian-half-height, gaussian, torrance-sparrow-1967, beckmann, trowbridge-reitz
+    /// Form of D: gaussian-half-height, gaussian, torrance-sparrow-1967, gaussian-normalised, beckmann, trowbridge-reitz
     #[arg(long, default_value = Distribution::GaussianHalfHeight.name())]
     distribution: Distribution,
     /// Denominator of the specular term: cos-theta-i, cos-theta-v, cos-i-cos-v
@@ -51,10 +52,15 @@ pub(crate) struct Arguments {
     /// Reference to assume where the file states none: same-geometry, fixed-geometry(THETA_I,THETA_V), none
     #[arg(long)]
     reference: Option<Reference>,
+    /// Fit every form of the terms instead, and compare them by cross-validation, AICc and BIC; writes nothing
+    #[arg(long, conflicts_with_all = ["output", "terms", "distribution", "denominator"])]
+    compare: bool,
     /// Print the result as JSON
     #[arg(long)]
     json: bool,
 }
+
+pub(crate) use compare::CompareResult;
 
 /// What `--json` prints.
 #[derive(Debug, Serialize, JsonSchema)]
@@ -151,6 +157,9 @@ struct SeparabilityResult {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> CommandResult {
+    if arguments.compare {
+        return compare::run(arguments);
+    }
     let outputs = outputs::outputs(&arguments.files, arguments.output.as_deref())?;
     let progress = progress::bar(arguments.files.len() as u64, "fitting");
     let results: Vec<Result<FittedModel, miette::Report>> = arguments

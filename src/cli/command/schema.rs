@@ -21,10 +21,13 @@ pub(crate) struct Arguments {
 pub(crate) fn all() -> Vec<(&'static str, Schema)> {
     let mut schemas = vec![
         ("convert", schema_for!(super::convert::ConvertResult)),
+        ("convert-model", schema_for!(super::convert::ConvertModelResult)),
+        ("design", schema_for!(super::design::DesignResult)),
         ("document", schema_for!(Document)),
         ("eval", schema_for!(super::eval::EvalResult)),
-        ("eval-model", schema_for!(super::eval::ModelJson)),
+        ("eval-model", schema_for!(crate::cli::model_source::ModelJson)),
         ("fit", schema_for!(super::fit::FitResult)),
+        ("fit-compare", schema_for!(super::fit::CompareResult)),
         ("import", schema_for!(super::import::ImportResult<'static>)),
         ("info", schema_for!(info::InfoResult)),
         ("migrate", schema_for!(super::migrate::MigrateResult)),
