@@ -3,7 +3,7 @@
 //! Each is fitted by least squares of *working* values and weights that are formed anew until they stand still (iteratively
 //! reweighted least squares): the same start-free fit serves them all.
 
-use statrs::function::erf::erfc;
+use libm::erfc;
 
 /// What a residual costs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
