@@ -75,6 +75,8 @@ fn fitted_terms() -> Vec<FittedTerm> {
         value: vec![TRUTH[k]],
         standard_uncertainty: vec![TRUTH[k] / 1000.0],
         shared_relative_uncertainty: Vec::new(),
+        interval_low: Vec::new(),
+        interval_high: Vec::new(),
     };
     vec![
         FittedTerm {
@@ -336,6 +338,7 @@ fn model(document: &Document) -> Model {
         measurement: id("scan"),
         data_digest: measurement_digest(scan).expect("a storable scan"),
         reduction: reduction.to_string(),
+        mask: None,
         reference: Reference::SameGeometry,
         unit: "1".to_owned(),
         emission: data.emission.clone(),

@@ -1,7 +1,9 @@
 //! A band of a factor is a ratio of sums; V(lambda) is the CIE's; what cannot be reduced says why.
 #![allow(clippy::unwrap_used)]
 
-use bbrf::dataset::{Acquisition, Derivation, Document, Id, Measurement, ReduceError, Reduction, Role, reduce};
+use bbrf::dataset::{
+    Acquisition, Bound, Derivation, Document, Id, Mask, Measurement, ReduceError, Reduction, Role, Side, reduce,
+};
 use bbrf::quantity::{
     Band, Bandpass, Component, CorrelatedOver, EmissionAxis, Flag, Geometry, Part, Quantity, QuantityKind, Reference,
     SignHabit, Uncertainty, WavelengthAxis,
@@ -139,10 +141,11 @@ fn reductions_are_spelled_as_on_the_command_line() {
     }
 }
 
+/// Where the floor is a number with an uncertainty, it is a bound to be fitted; where it is not, the wavelength is lost.
 #[test]
-fn a_wavelength_that_the_floor_truncates_is_left_out_and_said() {
-    // A signal in units of its noise in forty rows, and how many of them are on the floor.
-    let scan = |signal: f64, below: usize| {
+fn a_wavelength_that_the_floor_truncates_keeps_its_bounds_or_is_left_out_and_said() {
+    // A signal in units of its noise in forty rows, how many of them are on the floor, and what stands for the floor.
+    let scan = |signal: f64, below: usize, floor: f64| {
         let mut measurement = measurement(
             "m",
             QuantityKind::SpectralRadiance,
@@ -152,7 +155,7 @@ fn a_wavelength_that_the_floor_truncates_is_left_out_and_said() {
         );
         measurement.uncertainty.standard = Some(ndarray::ArcArray2::ones((40, 2)));
         for row in 0..below {
-            measurement.values[(row, 0)] = 1.0;
+            measurement.values[(row, 0)] = floor;
             measurement.flags[(row, 0)] = Flag::BelowDetection.bit();
         }
         Document { measurements: vec![measurement], ..Document::default() }
@@ -161,18 +164,56 @@ fn a_wavelength_that_the_floor_truncates_is_left_out_and_said() {
         let reduced = reduce(document, &document.measurements[0], Reduction::None).unwrap();
         (reduced.emission.wavelengths().unwrap().to_vec(), reduced.left_out_emission, reduced.notes)
     };
-    let (nm, left_out, notes) = columns(&scan(1.5, 3));
+    let (nm, left_out, notes) = columns(&scan(1.5, 3, f64::NAN));
     assert_eq!((nm, left_out), (vec![500.0], 1));
     assert!(
         notes[0].starts_with("1 of 2 emission values get no model") && notes[0].contains("400 nm (3)"),
         "{notes:?}"
     );
-    assert_eq!(columns(&scan(15.0, 3)).0, [400.0, 500.0], "far above the floor little is missing");
-    assert_eq!(columns(&scan(1.5, 0)).2, Vec::<String>::new());
-    let mut dark = scan(1.5, 3);
+    assert_eq!(columns(&scan(15.0, 3, f64::NAN)).0, [400.0, 500.0], "far above the floor little is missing");
+    assert_eq!(columns(&scan(1.5, 0, 1.0)).2, Vec::<String>::new());
+    let bounded = scan(1.5, 3, 1.0);
+    assert_eq!(columns(&bounded).0, [400.0, 500.0]);
+    let reduced = reduce(&bounded, &bounded.measurements[0], Reduction::None).unwrap();
+    let expected =
+        [0, 1, 2].map(|geometry| Bound { emission: 0, geometry, side: Side::AtMost, bound: 1.0, sigma: 1.0 });
+    assert_eq!(reduced.bounds, expected);
+    assert!(expected.iter().all(|bound| reduced.values[(0, bound.geometry)].is_nan()), "a bound is no value");
+    let mut dark = scan(1.5, 3, f64::NAN);
+    dark.measurements[0].values.fill(f64::NAN);
     dark.measurements[0].flags.fill(Flag::BelowDetection.bit());
     let error = reduce(&dark, &dark.measurements[0], Reduction::None).unwrap_err();
     assert!(matches!(error, ReduceError::Truncated { .. }) && error.to_string().contains("500 nm (40)"), "{error}");
+}
+
+#[test]
+fn a_saturated_value_is_a_lower_bound() {
+    let mut document = scan();
+    document.measurements[2].uncertainty.standard = Some(ndarray::ArcArray2::from_elem((2, 3), 0.01));
+    document.measurements[2].flags[(1, 2)] = Flag::Saturated.bit();
+    let reduced = reduce(&document, document.measurement("scan").unwrap(), Reduction::None).unwrap();
+    let bound = document.measurements[2].values[(1, 2)];
+    assert_eq!(reduced.bounds, [Bound { emission: 2, geometry: 1, side: Side::AtLeast, bound, sigma: 0.01 }]);
+}
+
+#[test]
+fn masks_say_what_they_hide_and_hide_it() {
+    let mut document = scan();
+    document.measurements[2].acquisitions[1].geometry = Some(Geometry::from_degrees(75.0, 180.0, 10.0, 0.0).unwrap());
+    for (text, hidden) in
+        [("theta-i>70", vec![1]), ("rows:0", vec![0]), ("rows:0-1,theta-v>89", vec![0, 1]), ("", vec![])]
+    {
+        let mask: Mask = text.parse().unwrap();
+        assert_eq!(mask.to_string(), text);
+        let mut reduced = reduce(&document, document.measurement("scan").unwrap(), Reduction::None).unwrap();
+        assert_eq!(reduced.apply(&mask), hidden.len());
+        for row in 0..2 {
+            assert_eq!(reduced.values.column(row).iter().all(|value| value.is_nan()), hidden.contains(&row), "{text}");
+        }
+    }
+    for wrong in ["theta>3", "rows:3-1", "rows:x", "theta-i>far", "nonsense"] {
+        assert!(wrong.parse::<Mask>().unwrap_err().to_string().contains("half-angle>DEGREES"), "{wrong}");
+    }
 }
 
 #[test]

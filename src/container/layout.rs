@@ -129,6 +129,9 @@ pub mod name {
     pub const PARAMETER_NAME: &str = "parameter";
     pub const SUFFIX_U: &str = "_u";
     pub const SUFFIX_SHARED: &str = "_u_shared";
+    pub const SUFFIX_LOW: &str = "_low";
+    pub const SUFFIX_HIGH: &str = "_high";
+    pub const MASK: &str = "mask";
     pub const COVARIANCE: &str = "covariance";
     pub const COVARIANCE_PARAMETERS: &str = "covariance_parameters";
     pub const COVARIANCE_ROW: &str = "covariance_row";

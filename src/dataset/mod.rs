@@ -7,6 +7,7 @@
 //! *Invariant:* prediction, residual and reduction are defined here, once; whoever fits, validates or draws uses them.
 
 mod anonymise;
+mod bound;
 mod calibration;
 mod conditions;
 mod convert;
@@ -16,6 +17,7 @@ mod extension;
 mod id;
 mod instrument;
 mod light;
+mod mask;
 mod measurement;
 mod model;
 mod place;
@@ -28,6 +30,7 @@ pub mod tree;
 mod twin;
 
 pub use anonymise::{Anonymised, Suspect};
+pub use bound::{Bound, Side};
 pub use calibration::Calibration;
 pub use conditions::Conditions;
 pub use convert::{Converted, NotConverted, Target, convert};
@@ -37,6 +40,7 @@ pub use extension::Extension;
 pub use id::{Id, IdError};
 pub use instrument::Instrument;
 pub use light::{Light, LightSpectrum};
+pub use mask::{Mask, UnknownMask};
 pub use measurement::{Acquisition, Derivation, Excitation, Measurement, Role, ShapeError};
 pub use model::{FittedParameter, FittedTerm, Model, Residuals, Separability};
 pub use place::Place;

@@ -22,6 +22,29 @@ pub struct FittedParameter {
     /// empty where there is none. It is not contained in `standard_uncertainty`.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub shared_relative_uncertainty: Vec<f64>,
+    /// Lower ends of the 95 % intervals by profile likelihood, one per value; NaN at an end that the data leave open (the
+    /// interval reaches the edge of the searched box). Empty where no interval was formed.
+    #[serde(default, skip_serializing_if = "Vec::is_empty", with = "open_ends")]
+    #[schemars(with = "Vec<Option<f64>>")]
+    pub interval_low: Vec<f64>,
+    /// Upper ends, likewise.
+    #[serde(default, skip_serializing_if = "Vec::is_empty", with = "open_ends")]
+    #[schemars(with = "Vec<Option<f64>>")]
+    pub interval_high: Vec<f64>,
+}
+
+/// Numbers in JSON with `null` for NaN.
+mod open_ends {
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+    pub(super) fn serialize<S: Serializer>(numbers: &[f64], serializer: S) -> Result<S::Ok, S::Error> {
+        numbers.iter().map(|x| (!x.is_nan()).then_some(*x)).collect::<Vec<Option<f64>>>().serialize(serializer)
+    }
+
+    pub(super) fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<f64>, D::Error> {
+        let numbers = Vec::<Option<f64>>::deserialize(deserializer)?;
+        Ok(numbers.into_iter().map(|x| x.unwrap_or(f64::NAN)).collect())
+    }
 }
 
 /// A term of a fitted model.
@@ -91,6 +114,9 @@ pub struct Model {
     pub data_digest: String,
     /// How a spectrum became the fitted number, as in `band:500-620`.
     pub reduction: String,
+    /// Which rows were masked out on request, as [`Mask`](super::Mask) writes it; none where all were offered.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub mask: Option<String>,
     /// The reference convention that the forward model included.
     pub reference: Reference,
     /// Unit of the fitted number.
@@ -121,6 +147,12 @@ pub struct Model {
 }
 
 impl Model {
+    /// How many parameters were fitted to the numbers: those of each emission value, and the common ones once.
+    #[must_use]
+    pub fn fitted_parameters(&self) -> usize {
+        self.terms.iter().flat_map(|term| &term.parameters).map(|parameter| parameter.value.len()).sum()
+    }
+
     /// The name of a parameter of the term at a position in `covariance_parameters`: `TERM.PARAMETER`, and where the
     /// model has several terms of that kind `TERM:POSITION.PARAMETER`, so that every name means one parameter.
     #[must_use]

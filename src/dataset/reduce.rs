@@ -12,6 +12,7 @@ use std::str::FromStr;
 
 use ndarray::Array2;
 
+use super::bound::{Bound, bound_at};
 use super::{Document, Measurement};
 use crate::quantity::{Band, CorrelatedOver, EmissionAxis, Geometry, QuantityKind, Reference};
 use truncation::Truncation;
@@ -158,6 +159,11 @@ pub struct Reduced {
     pub values: Array2<f64>,
     /// Standard uncertainty \[emission, N\] independent between rows; `None` where the measurement has none.
     pub sigma: Option<Array2<f64>>,
+    /// Readings of which one side is known (below detection, saturated); `values` holds NaN there. None where the
+    /// measurement has no uncertainties.
+    pub bounds: Vec<Bound>,
+    /// Relative standard uncertainty that the emission values of a row share, one per emission value: a part of `sigma`.
+    pub record_relative: Vec<f64>,
     /// Relative standard uncertainty shared by all rows, one per emission value.
     pub shared_relative: Vec<f64>,
     /// Rows of the measurement that are not used.
@@ -216,7 +222,7 @@ fn geometry_of(measurement: &Measurement, row: usize) -> Option<Geometry> {
 }
 
 /// Independent standard uncertainty of one value: its own and what its acquisition shares over wavelengths.
-fn independent_sigma(measurement: &Measurement, row: usize, column: usize) -> Option<f64> {
+pub(super) fn independent_sigma(measurement: &Measurement, row: usize, column: usize) -> Option<f64> {
     let own = measurement.uncertainty.standard.as_ref()?[(row, column)];
     let scale = shared(measurement, column, |over| over == CorrelatedOver::Wavelengths);
     Some(own.hypot(scale * measurement.values[(row, column)]))
@@ -233,7 +239,12 @@ fn keep_columns(measurement: &Measurement, reduction: String) -> Result<Reduced,
     let placed: Vec<usize> = (0..count).filter(|&row| geometry_of(measurement, row).is_some()).collect();
     let truncation = Truncation::of(measurement, &placed);
     let columns = &truncation.fair;
-    let has_value = |row: &usize| columns.iter().any(|&column| usable(measurement, *row, column).is_finite());
+    let has_value = |row: &usize| {
+        let known = |&column: &usize| {
+            usable(measurement, *row, column).is_finite() || bound_at(measurement, *row, column).is_some()
+        };
+        columns.iter().any(known)
+    };
     let rows: Vec<usize> = placed.iter().copied().filter(has_value).collect();
     let notes = truncation.notes(measurement, placed.len());
     if columns.is_empty() && !truncation.truncated.is_empty() {
@@ -244,7 +255,17 @@ fn keep_columns(measurement: &Measurement, reduction: String) -> Result<Reduced,
     }
     let shape = (columns.len(), rows.len());
     let over_rows = |over| over != CorrelatedOver::Wavelengths;
+    let over_wavelengths = |over| over == CorrelatedOver::Wavelengths;
+    let bounds = columns.iter().enumerate().flat_map(|(emission, &column)| {
+        let at = move |(geometry, &row): (usize, &usize)| {
+            bound_at(measurement, row, column).map(|bound| Bound { emission, geometry, ..bound })
+        };
+        rows.iter().enumerate().filter_map(at)
+    });
+    let bounds: Vec<Bound> = bounds.collect();
     Ok(Reduced {
+        bounds,
+        record_relative: columns.iter().map(|&column| shared(measurement, column, over_wavelengths)).collect(),
         kind: measurement.quantity.kind,
         reference: measurement.quantity.reference,
         reduction,

@@ -1,9 +1,13 @@
 //! What the data cannot tell, in words and numbers.
 
+use super::fits::Fits;
 use super::geometry_set::{GeometrySet, INDEX_BOX};
 use super::left_out::LeftOut;
+use super::observed::Observed;
 use super::outcome::Fit;
+use super::profile::Interval;
 use super::solve::{SEEN, Terms};
+use crate::dataset::{Reduced, Side};
 
 /// Relative standard uncertainty of n - 1 beyond which the index is called undetermined.
 const VAGUE_INDEX: f64 = 0.2;
@@ -13,14 +17,87 @@ const VAGUE_ROUGHNESS: f64 = 0.2;
 const TIED: f64 = 0.98;
 
 /// One sentence for each thing that a reader of the numbers must know.
-pub(super) fn findings(fit: &Fit, set: &GeometrySet, terms: Terms, has_sigma: bool, left_out: &LeftOut) -> Vec<String> {
+pub(super) fn findings(fits: &Fits, set: &GeometrySet, terms: Terms, data: &Reduced) -> Vec<String> {
+    let mut left_out = LeftOut { no_value: data.left_out * data.values.nrows(), ..LeftOut::default() };
+    fits.list.iter().for_each(|observed| left_out.add_all(&observed.fit.left_out));
     let mut list: Vec<String> = left_out.reasons().iter().map(|reason| format!("values left out: {reason}")).collect();
+    let has_sigma = data.sigma.is_some();
     if !has_sigma {
         list.push(
             "the data have no uncertainties: all values weigh the same and the covariance is scaled by the residuals"
                 .to_owned(),
         );
     }
+    list.extend(bounds(data));
+    list.extend(outliers(fits));
+    match fits.list.as_slice() {
+        [one] => list.extend(of_one(one, set, terms, has_sigma)),
+        many => list.extend(of_many(many, data, terms, has_sigma)),
+    }
+    list
+}
+
+/// Readings that were fitted as bounds.
+fn bounds(data: &Reduced) -> Option<String> {
+    let count = |side: Side| data.bounds.iter().filter(|bound| bound.side == side).count();
+    let (floor, ceiling) = (count(Side::AtMost), count(Side::AtLeast));
+    let phrase = |count: usize, what: &str| (count > 0).then(|| format!("{count} {what}"));
+    let said: Vec<String> =
+        [phrase(floor, "below detection as upper bounds"), phrase(ceiling, "saturated as lower bounds")]
+            .into_iter()
+            .flatten()
+            .collect();
+    (!said.is_empty()).then(|| {
+        format!(
+            "readings fitted as bounds and not as values: {} (the probability of a reading beyond the bound takes the place \
+             of a residual)",
+            said.join(", ")
+        )
+    })
+}
+
+/// What a robust loss did.
+fn outliers(fits: &Fits) -> Option<String> {
+    let scales: Vec<f64> = fits.list.iter().filter_map(|observed| observed.scale).collect();
+    let count: usize = fits.list.iter().map(|observed| observed.outliers.len()).sum();
+    let largest = scales.iter().copied().fold(f64::NAN, f64::max);
+    (!scales.is_empty()).then(|| {
+        format!(
+            "{count} values count for less than half by the robust loss; the residuals of the others scatter by \
+             {largest:.3} of their stated uncertainty (of their unit, where none is stated)"
+        )
+    })
+}
+
+/// Findings of fits that each stand for one emission value: how many, and where.
+fn of_many(fits: &[Observed], data: &Reduced, terms: Terms, has_sigma: bool) -> Vec<String> {
+    let nm = data.emission.wavelengths().unwrap_or(&[]);
+    let count = fits.len();
+    let said = |what: &str, is: &dyn Fn(&Observed) -> bool| {
+        let at: Vec<usize> = (0..count).filter(|&band| is(&fits[band])).collect();
+        let (first, last) = (at.first()?, at.last()?);
+        let place = |band: &usize| nm.get(*band).map_or_else(|| format!("value {band}"), |nm| format!("{nm} nm"));
+        Some(format!("{} of {count} emission values ({} to {}): {what}", at.len(), place(first), place(last)))
+    };
+    let mut list = Vec::new();
+    if terms.specular {
+        let unseen = |observed: &Observed| !observed.fit.has_specular();
+        list.extend(said("no specular term seen; roughness, index and intensity are undefined there", &unseen));
+        let open = |interval: Option<Interval>| interval.is_some_and(|interval| !interval.is_closed());
+        let index = |observed: &Observed| open(observed.intervals.index_minus_one);
+        list.extend(said("the refractive index has an open interval, the data cannot tell it there", &index));
+        let roughness = |observed: &Observed| open(observed.intervals.roughness);
+        list.extend(said("the roughness has an open interval, the data cannot tell it there", &roughness));
+    }
+    let wrong = |observed: &Observed| misfit(&observed.fit, has_sigma).is_some();
+    list.extend(said("the residuals exceed the stated uncertainties", &wrong));
+    list
+}
+
+/// Findings of one fit, of one emission value or of many together.
+fn of_one(observed: &Observed, set: &GeometrySet, terms: Terms, has_sigma: bool) -> Vec<String> {
+    let fit = &observed.fit;
+    let mut list = Vec::new();
     if terms.specular && !fit.has_specular() {
         list.push(format!(
             "no specular term seen: the best one lowers chi-square by {:.1}, and {SEEN} are asked for; roughness, index \
@@ -33,7 +110,7 @@ pub(super) fn findings(fit: &Fit, set: &GeometrySet, terms: Terms, has_sigma: bo
         list.extend(at_zero("diffuse", fit.bands.iter().map(|band| band.diffuse)));
     }
     if fit.has_specular() {
-        list.extend(specular(fit, set));
+        list.extend(specular(observed, set));
     }
     list
 }
@@ -51,21 +128,32 @@ fn misfit(fit: &Fit, has_sigma: bool) -> Option<String> {
     })
 }
 
-fn specular(fit: &Fit, set: &GeometrySet) -> Vec<String> {
+fn specular(observed: &Observed, set: &GeometrySet) -> Vec<String> {
+    let fit = &observed.fit;
     let mut list = Vec::new();
     list.extend(at_zero("specular", fit.bands.iter().map(|band| band.intensity)));
     let (index_low, index_high) = (1.0 + INDEX_BOX.0, 1.0 + INDEX_BOX.1);
     list.extend(if fit.at_bound[0] {
         Some(on_edge("roughness", fit.roughness, set.roughness_box))
     } else {
-        roughness(fit, set)
+        roughness(observed, set)
     });
     list.extend(if fit.at_bound[1] {
         Some(on_edge("refractive index", fit.refractive_index(), (index_low, index_high)))
     } else {
-        index(fit)
+        index(observed, set)
     });
     list
+}
+
+/// An interval in words.
+fn between(interval: &Interval) -> String {
+    match (interval.low_open, interval.high_open) {
+        (false, false) => format!("between {:.4} and {:.4}", interval.low, interval.high),
+        (true, false) => format!("below {:.4}, with no lower limit", interval.high),
+        (false, true) => format!("above {:.4}, with no upper limit", interval.low),
+        (true, true) => "anywhere in the searched box".to_owned(),
+    }
 }
 
 /// A parameter that ended on the edge of the searched box.
@@ -89,9 +177,9 @@ fn at_zero(term: &str, amplitudes: impl ExactSizeIterator<Item = f64>) -> Option
     })
 }
 
-fn index(fit: &Fit) -> Option<String> {
+fn index(observed: &Observed, set: &GeometrySet) -> Option<String> {
+    let fit = &observed.fit;
     let sigma = fit.log_sigma[1];
-    let interval = |factor: f64| 1.0 + fit.index_minus_one * factor;
     if sigma.is_nan() {
         return Some(
             "refractive index: these geometries cannot tell it from the intensity (all have the same angle between \
@@ -102,17 +190,18 @@ fn index(fit: &Fit) -> Option<String> {
     let band = fit.bands.iter().max_by(|a, b| a.intensity.total_cmp(&b.intensity))?;
     let c = &band.covariance;
     let correlation = c[1][3] / (c[1][1] * c[3][3]).sqrt();
-    if sigma <= VAGUE_INDEX && correlation.abs() < TIED {
+    let interval = observed.intervals.index_minus_one.map(Interval::plus_one)?;
+    if interval.is_closed() && sigma <= VAGUE_INDEX && correlation.abs() < TIED {
         return None;
     }
     let product = product_uncertainty(fit, band.intensity, c);
+    let verdict = if interval.is_closed() { "" } else { "the data cannot tell it; " };
     Some(format!(
-        "refractive index: between {:.3} and {:.3} (two standard uncertainties), correlation with the intensity {:.4}; \
-         their product with the normal reflectance, intensity x F(0), is known to {:.2} %; measure beyond 60 degrees",
-        interval((-2.0 * sigma).exp()),
-        interval((2.0 * sigma).exp()),
-        correlation,
-        100.0 * product
+        "refractive index: {verdict}{} (95 %), correlation with the intensity {correlation:.4}; their product with the \
+         normal reflectance, intensity x F(0), is known to {:.2} %; {}",
+        between(&interval),
+        100.0 * product,
+        set.advice_for_index()
     ))
 }
 
@@ -126,14 +215,23 @@ fn product_uncertainty(fit: &Fit, intensity: f64, c: &[[f64; 4]; 4]) -> f64 {
     variance.max(0.0).sqrt()
 }
 
-fn roughness(fit: &Fit, set: &GeometrySet) -> Option<String> {
+fn roughness(observed: &Observed, set: &GeometrySet) -> Option<String> {
+    let fit = &observed.fit;
     let sigma = fit.log_sigma[0];
     let narrowest = set.distribution.roughness_from_half_width(set.smallest_angle);
-    if sigma.is_nan() || sigma > VAGUE_ROUGHNESS {
-        return Some(format!(
-            "roughness: not determined by these geometries (standard uncertainty {:.0} %)",
-            100.0 * sigma
-        ));
+    let interval = observed.intervals.roughness?;
+    if !interval.is_closed() || sigma.is_nan() || sigma > VAGUE_ROUGHNESS {
+        let verdict = if interval.is_closed() { "" } else { "not determined by these geometries; " };
+        let advice = if fit.roughness < narrowest {
+            format!(
+                "; the smallest half-vector angle of the scan besides the mirror direction is {:.2} degrees: measure closer \
+                 to the mirror direction",
+                set.smallest_angle.to_degrees()
+            )
+        } else {
+            String::new()
+        };
+        return Some(format!("roughness: {verdict}{} (95 %){advice}", between(&interval)));
     }
     (fit.roughness < 0.5 * narrowest).then(|| {
         format!(

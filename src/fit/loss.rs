@@ -5,6 +5,8 @@
 
 use libm::erfc;
 
+use crate::dataset::Side;
+
 /// What a residual costs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Loss {
@@ -57,15 +59,6 @@ impl Loss {
             }
         }
     }
-}
-
-/// The side of a bound on which the true reading lies.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Side {
-    /// On or below it: a value on the instrument's floor.
-    AtMost,
-    /// On or above it: a detector that was overloaded.
-    AtLeast,
 }
 
 /// The normal density over the normal distribution function at z, and ln of the latter: finite and accurate for every

@@ -1,19 +1,17 @@
 //! From a measurement of a document to a fitted model.
 
-use ndarray::Array2;
-
+use super::curvature::Share;
+use super::fits::Fits;
 use super::geometry_set::{GeometrySet, SetError};
 use super::identifiability::findings;
-use super::left_out::LeftOut;
-use super::outcome::Fit;
+use super::loss::Loss;
 use super::separability::{NotSeparable, separability};
 use super::solve::{DataError, Fitter, Terms};
 use crate::dataset::{
-    Document, FittedParameter, FittedTerm, Id, Measurement, Model, ReduceError, Reduced, Reduction, Residuals,
-    TermsError, reduce, residuals,
+    Document, Id, Mask, Measurement, Model, ReduceError, Reduced, Reduction, Residuals, TermsError, reduce, residuals,
 };
 use crate::quantity::{Part, QuantityKind, Reference};
-use crate::terms::{Denominator, Distribution, Parameter, TermKind};
+use crate::terms::{Denominator, Distribution, TermKind};
 
 /// What to fit and how.
 #[derive(Debug, Clone, PartialEq)]
@@ -27,6 +25,16 @@ pub struct FitOptions {
     pub denominator: Denominator,
     /// How a spectrum becomes the fitted number.
     pub reduction: Reduction,
+    /// What emission values that are fitted together have in common; `None` for nothing: each is fitted by itself.
+    pub share: Option<Share>,
+    /// What a residual costs.
+    pub loss: Loss,
+    /// Bounds of the roughness, in the unit of the distribution, where narrower ones than the usual are wanted.
+    pub roughness_box: Option<(f64, f64)>,
+    /// Bounds of the refractive index, likewise.
+    pub index_box: Option<(f64, f64)>,
+    /// Rows to leave out.
+    pub mask: Mask,
     /// A reference convention to use where the measurement does not state one; recorded as an assumption.
     pub assume_reference: Option<Reference>,
     /// Digest of the measurement, stored with the model.
@@ -40,6 +48,11 @@ impl Default for FitOptions {
             distribution: Distribution::GaussianHalfHeight,
             denominator: Denominator::CosThetaI,
             reduction: Reduction::Auto,
+            share: Some(Share::Shape),
+            loss: Loss::Squares,
+            roughness_box: None,
+            index_box: None,
+            mask: Mask::default(),
             assume_reference: None,
             data_digest: String::new(),
         }
@@ -150,19 +163,16 @@ pub fn fit_measurement(
 ) -> Result<Model, FitError> {
     let name = || measurement.id.to_string();
     let Prepared { choice, mut data, reference, assumed } = prepared(document, measurement, options)?;
-    let geometry_error = |source| FitError::Geometry { measurement: name(), source };
-    let data_error = |source| FitError::Data { measurement: name(), source };
-    let (set, fit) = fit_reduced(&data, &reference, choice.terms(), options, geometry_error, data_error)?;
+    let (set, fits) = fit_reduced(&name(), &data, &reference, choice.terms(), options)?;
     // A geometry that took no part has no residual either, even where the sum of terms happens to have a value.
     set.undefined().iter().for_each(|&row| data.values.column_mut(row).fill(f64::NAN));
-    let left_out = LeftOut { no_value: fit.left_out.no_value + data.left_out * data.values.nrows(), ..fit.left_out };
     let mut identifiability = data.notes.clone();
     if assumed {
         identifiability
             .push(format!("the measurement does not state its reference; `{reference}` was assumed on request"));
     }
     identifiability.extend(not_a_ratio(&data, choice));
-    identifiability.extend(findings(&fit, &set, choice.terms(), data.sigma.is_some(), &left_out));
+    identifiability.extend(findings(&fits, &set, choice.terms(), &data));
     let separability = match separability(&data, &reference) {
         Ok(separability) => Some(separability),
         Err(NotSeparable::NoTable) => None,
@@ -171,27 +181,27 @@ pub fn fit_measurement(
             None
         }
     };
-    let (covariance_parameters, covariance) = stored_covariance(&fit, choice);
+    let (covariance_parameters, covariance) = fits.stored_covariance(choice);
     let mut model = Model {
         id: Id::from_title(&format!("{}-{}", measurement.id, what_was_fitted(&data))),
         title: None,
         measurement: measurement.id.clone(),
         data_digest: options.data_digest.clone(),
         reduction: data.reduction.clone(),
+        mask: (!options.mask.is_empty()).then(|| options.mask.to_string()),
         reference,
         unit: data.kind.unit().to_owned(),
         emission: data.emission.clone(),
-        terms: fitted_terms(&fit, &data, choice, options),
+        terms: fits.terms(&data, choice, options),
         covariance_parameters,
         covariance: covariance.into_shared(),
         residuals: Residuals { rms: f64::NAN, reduced_chi_square: f64::NAN, count: 0, left_out: 0 },
-        converged: fit.stop.is_converged(),
-        method: method(&fit),
+        converged: fits.converged(),
+        method: fits.method(options),
         identifiability,
         separability,
     };
-    let parameters = data.values.len() - fit.left_out.total() - fit.degrees_of_freedom as usize;
-    model.residuals = residuals(&model, &data, parameters)?.1;
+    model.residuals = residuals(&model, &data, model.fitted_parameters())?.1;
     Ok(model)
 }
 
@@ -216,7 +226,11 @@ pub(super) fn prepared(
         return Err(FitError::NoFactor { measurement: name(), kind });
     }
     let choice = Choice::new(&options.terms, measurement.quantity.part)?;
-    let data = reduce(document, measurement, options.reduction)?;
+    let mut data = reduce(document, measurement, options.reduction)?;
+    let hidden = data.apply(&options.mask);
+    if hidden > 0 {
+        data.notes.push(format!("{hidden} rows are masked out on request ({})", options.mask));
+    }
     let (reference, assumed) = match (data.reference, options.assume_reference) {
         (Reference::Unstated, Some(assumed)) => (assumed, true),
         (stated, Some(asked)) if asked != stated => {
@@ -253,101 +267,36 @@ fn not_a_ratio(data: &Reduced, choice: Choice) -> Option<String> {
 
 /// Fits the terms; where no specular one is seen, the diffuse one alone over every geometry at which it has a value.
 fn fit_reduced(
+    name: &str,
     data: &Reduced,
     reference: &Reference,
     terms: Terms,
     options: &FitOptions,
-    geometry_error: impl Fn(SetError) -> FitError,
-    data_error: impl Fn(DataError) -> FitError,
-) -> Result<(GeometrySet, Fit), FitError> {
-    let sigma = || data.sigma.as_ref().map(|sigma| sigma.view());
-    let fitted = |set: GeometrySet, terms: Terms| match Fitter::new(&set, terms).fit_bands(data.values.view(), sigma())
-    {
-        Ok(fit) => Ok((set, fit)),
-        Err(source) => Err(data_error(source)),
+) -> Result<(GeometrySet, Fits), FitError> {
+    let geometry_error = |source| FitError::Geometry { measurement: name.to_owned(), source };
+    let data_error = |source| FitError::Data { measurement: name.to_owned(), source };
+    let fitted = |set: &GeometrySet, terms: Terms| {
+        let mut fitter = Fitter::new(set, terms).sharing(options.share.unwrap_or_default());
+        let index = options.index_box.map(|(low, high)| (low - 1.0, high - 1.0));
+        if options.roughness_box.is_some() || index.is_some() {
+            let all = (f64::MIN_POSITIVE, f64::MAX);
+            fitter = fitter.within(options.roughness_box.unwrap_or(all), index.unwrap_or(all));
+        }
+        Fits::of(&fitter, data, options).map_err(data_error)
     };
-    let diffuse = || GeometrySet::diffuse(&data.geometry, reference).map_err(&geometry_error);
+    let diffuse = || GeometrySet::diffuse(&data.geometry, reference).map_err(geometry_error);
     if !terms.specular {
-        return fitted(diffuse()?, terms);
+        let set = diffuse()?;
+        let fits = fitted(&set, terms)?;
+        return Ok((set, fits));
     }
     let set = GeometrySet::new(&data.geometry, reference, options.distribution, options.denominator)
-        .map_err(&geometry_error)?;
-    let (set, fit) = fitted(set, terms)?;
-    if fit.has_specular() || set.undefined().is_empty() || !terms.diffuse {
-        return Ok((set, fit));
+        .map_err(geometry_error)?;
+    let fits = fitted(&set, terms)?;
+    if fits.has_specular() || set.undefined().is_empty() || !terms.diffuse {
+        return Ok((set, fits));
     }
-    let (set, alone) = fitted(diffuse()?, Terms { diffuse: true, specular: false })?;
-    Ok((set, Fit { specular_gain: fit.specular_gain, evaluations: fit.evaluations, ..alone }))
-}
-
-fn method(fit: &Fit) -> String {
-    format!(
-        "least squares, weighted with 1/sigma^2 where sigma is known; amplitudes non-negative by variable projection; \
-         roughness and index from a 12 x 3 grid, two starts polished by Levenberg-Marquardt; {} after {} evaluations",
-        fit.stop.text(),
-        fit.evaluations
-    )
-}
-
-fn fitted_terms(fit: &Fit, data: &Reduced, choice: Choice, options: &FitOptions) -> Vec<FittedTerm> {
-    let unit = data.kind.unit();
-    let sigma = |k: usize| (0..fit.bands.len()).map(|band| fit.standard_uncertainty(band)[k]).collect::<Vec<f64>>();
-    let amplitude = |parameter: &Parameter, k: usize| FittedParameter {
-        name: parameter.name.to_owned(),
-        unit: unit.to_owned(),
-        value: fit.bands.iter().map(|band| if k == 0 { band.diffuse } else { band.intensity }).collect(),
-        standard_uncertainty: sigma(k),
-        shared_relative_uncertainty: shared(data),
-    };
-    let common = |parameter: &Parameter, value: f64, k: usize| FittedParameter {
-        name: parameter.name.to_owned(),
-        unit: parameter.unit(Some(options.distribution)).to_owned(),
-        value: vec![value],
-        standard_uncertainty: vec![fit.standard_uncertainty(0)[k]],
-        shared_relative_uncertainty: Vec::new(),
-    };
-    let mut terms = Vec::new();
-    if let Some(kind) = choice.diffuse {
-        let parameters = vec![amplitude(&kind.parameters()[0], 0)];
-        terms.push(FittedTerm { kind, distribution: None, denominator: None, parameters });
-    }
-    if fit.has_specular() {
-        let names = TermKind::TorranceSparrow.parameters();
-        terms.push(FittedTerm {
-            kind: TermKind::TorranceSparrow,
-            distribution: Some(options.distribution),
-            denominator: Some(options.denominator),
-            parameters: vec![
-                amplitude(&names[0], 1),
-                common(&names[1], fit.roughness, 2),
-                common(&names[2], fit.refractive_index(), 3),
-            ],
-        });
-    }
-    terms
-}
-
-/// What all rows share scales every amplitude alike; nothing is stored where there is none.
-fn shared(data: &Reduced) -> Vec<f64> {
-    if data.shared_relative.iter().all(|relative| *relative == 0.0) { Vec::new() } else { data.shared_relative.clone() }
-}
-
-/// The covariance that is stored: of all parameters where there is one emission value, of the common ones otherwise.
-fn stored_covariance(fit: &Fit, choice: Choice) -> (Vec<String>, Array2<f64>) {
-    let name = |kind: TermKind, k: usize| format!("{}.{}", kind.name(), kind.parameters()[k].name);
-    let mut entries: Vec<(String, usize)> = Vec::new();
-    let single = fit.bands.len() == 1;
-    if let (Some(kind), true) = (choice.diffuse, single) {
-        entries.push((name(kind, 0), 0));
-    }
-    if fit.has_specular() {
-        if single {
-            entries.push((name(TermKind::TorranceSparrow, 0), 1));
-        }
-        entries.extend([1, 2].map(|k| (name(TermKind::TorranceSparrow, k), k + 1)));
-    }
-    let covariance = Array2::from_shape_fn((entries.len(), entries.len()), |(i, j)| {
-        fit.bands[0].covariance[entries[i].1][entries[j].1]
-    });
-    (entries.into_iter().map(|entry| entry.0).collect(), covariance)
+    let set = diffuse()?;
+    let alone = fitted(&set, Terms { diffuse: true, specular: false })?;
+    Ok((set, alone.after(&fits)))
 }

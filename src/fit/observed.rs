@@ -3,10 +3,11 @@
 use ndarray::{Array2, ArrayView2};
 
 use super::columns::{Columns, Point};
-use super::loss::{Loss, Side, Working, expected, one_sided};
+use super::loss::{Loss, Working, expected, one_sided};
 use super::outcome::Fit;
 use super::profile::Intervals;
 use super::solve::{DataError, Fitter};
+use crate::dataset::{Bound, Side};
 
 /// Most passes of least squares; ten are usual, for Tukey's loss thirty.
 const MOST_PASSES: usize = 200;
@@ -16,21 +17,6 @@ const SETTLED: f64 = 1e-6;
 const MEDIAN_TO_SIGMA: f64 = 1.482_602_218_505_602;
 /// An outlier is what has less than this of its weight.
 const OUTLYING: f64 = 0.5;
-
-/// A reading of which one side is known.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Bound {
-    /// Index of the emission value.
-    pub emission: usize,
-    /// Index of the geometry.
-    pub geometry: usize,
-    /// On which side of the bound it lies.
-    pub side: Side,
-    /// The bound, in the unit of the values.
-    pub bound: f64,
-    /// Standard uncertainty of a reading there; the same unit.
-    pub sigma: f64,
-}
 
 /// What was observed.
 #[derive(Debug, Clone, Copy)]

@@ -383,13 +383,15 @@ fn white_reference(id: Id) -> impl Strategy<Value = WhiteReference> {
 }
 
 fn parameter() -> impl Strategy<Value = FittedParameter> {
-    (text(), text(), numbers(3), numbers(3), numbers(3)).prop_map(
-        |(name, unit, value, standard_uncertainty, shared_relative_uncertainty)| FittedParameter {
+    (text(), text(), numbers(3), numbers(3), numbers(3), numbers(3), numbers(3)).prop_map(
+        |(name, unit, value, standard_uncertainty, shared, interval_low, interval_high)| FittedParameter {
             name,
             unit,
             value,
             standard_uncertainty,
-            shared_relative_uncertainty,
+            shared_relative_uncertainty: shared,
+            interval_low,
+            interval_high,
         },
     )
 }
@@ -428,13 +430,14 @@ fn model(id: Id, measurements: &[Id]) -> impl Strategy<Value = Model> + use<> {
         (0_usize..3, 0_usize..3).prop_flat_map(|(rows, columns)| matrix(rows, columns)),
         (number(), number(), any::<u64>(), any::<u64>()),
     );
-    let tail = (any::<bool>(), text(), vec(text(), 0..3), of(separability()));
+    let tail = (any::<bool>(), text(), vec(text(), 0..3), of(separability()), of(text()));
     (head, middle, tail).prop_map(move |(head, middle, tail)| Model {
         id: id.clone(),
         title: head.0,
         measurement: head.1,
         data_digest: head.2,
         reduction: head.3,
+        mask: tail.4,
         reference: head.4,
         unit: head.5,
         emission: head.6,

@@ -149,6 +149,8 @@ pub fn model(data_digest: String) -> Model {
         value: vec![value],
         standard_uncertainty: vec![value / 100.0],
         shared_relative_uncertainty: vec![],
+        interval_low: vec![value * 0.98],
+        interval_high: vec![value * 1.02],
     };
     Model {
         id: id("fit"),
@@ -156,6 +158,7 @@ pub fn model(data_digest: String) -> Model {
         measurement: id("scan"),
         data_digest,
         reduction: "band:500-620".into(),
+        mask: Some("rows:7".into()),
         reference: Reference::FixedGeometry { theta_i_deg: 0.0, theta_v_deg: 45.0 },
         unit: "1".into(),
         emission: EmissionAxis::Band { band: Some(Band { from_nm: 500.0, to_nm: 620.0 }) },

@@ -127,6 +127,8 @@ fn parameter(name: &str, value: f64, sigma: f64, unit: &str) -> FittedParameter 
         value: vec![value],
         standard_uncertainty: vec![sigma],
         shared_relative_uncertainty: Vec::new(),
+        interval_low: Vec::new(),
+        interval_high: Vec::new(),
     }
 }
 
@@ -137,6 +139,8 @@ pub(crate) fn model() -> Model {
         denominator: None,
         parameters: vec![FittedParameter {
             shared_relative_uncertainty: vec![0.005],
+            interval_low: Vec::new(),
+            interval_high: Vec::new(),
             ..parameter("albedo", 1.015_113, 0.000_412, "1")
         }],
     };
@@ -156,6 +160,7 @@ pub(crate) fn model() -> Model {
         measurement: id("factor"),
         data_digest: "ab".repeat(32),
         reduction: "band:500-620".to_owned(),
+        mask: None,
         reference: REFERENCE,
         unit: "1".to_owned(),
         emission: EmissionAxis::Band { band: Some(Band { from_nm: 500.0, to_nm: 620.0 }) },

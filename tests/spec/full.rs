@@ -89,8 +89,11 @@ pub fn full() -> Document {
     document.measurements.push(band);
     let mut model = document.models[0].clone();
     model.title = text();
+    model.mask = Some("theta-i>70".to_owned());
     model.identifiability = vec!["a sentence".to_owned()];
     model.terms.iter_mut().flat_map(|term| &mut term.parameters).for_each(|parameter| {
+        parameter.interval_low = parameter.value.iter().map(|value| 0.9 * value).collect();
+        parameter.interval_high = vec![f64::NAN; parameter.value.len()];
         parameter.shared_relative_uncertainty = vec![0.002];
     });
     model.separability = Some(Separability {

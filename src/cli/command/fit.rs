@@ -2,6 +2,7 @@
 
 mod compare;
 mod outputs;
+mod settings;
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -17,8 +18,8 @@ use crate::cli::opened::open_to_rewrite;
 use crate::cli::output::{not_written, print_json, print_text, report_error};
 use crate::cli::progress;
 use crate::container::{self, Opened};
-use crate::dataset::{Document, FittedParameter, Measurement, Model, Reduction, Role, Step};
-use crate::fit::{FitOptions, fit_measurement};
+use crate::dataset::{Document, FittedParameter, Mask, Measurement, Model, Reduction, Role, Step};
+use crate::fit::{FitOptions, Loss, fit_measurement};
 use crate::quantity::{Reference, rounded_with_uncertainty};
 use crate::terms::{Denominator, Distribution, TermKind};
 
@@ -49,6 +50,18 @@ pub(crate) struct Arguments {
     /// How a spectrum becomes the fitted number: auto, band:FROM-TO (nm), luminance, none (every wavelength)
     #[arg(long, default_value = "auto")]
     reduce: Reduction,
+    /// What wavelengths that are fitted one by one have in common: shape (roughness and index), shape-and-intensity, nothing
+    #[arg(long, default_value = "shape", value_parser = settings::share)]
+    share: settings::Sharing,
+    /// What a residual costs: squares, huber (outliers pull little), tukey (outliers do not pull)
+    #[arg(long, default_value = "squares", value_parser = settings::loss)]
+    loss: Loss,
+    /// Bounds as roughness=LOW..HIGH (unit of the distribution) or refractive_index=LOW..HIGH; repeat for both
+    #[arg(long, value_parser = settings::bounds)]
+    bounds: Vec<settings::Bounds>,
+    /// Leave rows out: theta-i>DEGREES, theta-v>DEGREES, half-angle>DEGREES, rows:FIRST-LAST (from 0), by commas
+    #[arg(long, default_value = "")]
+    mask: Mask,
     /// Reference to assume where the file states none: same-geometry, fixed-geometry(THETA_I,THETA_V), none
     #[arg(long)]
     reference: Option<Reference>,
@@ -117,6 +130,11 @@ struct TermResult {
 struct ParameterResult {
     value: NumberOrList,
     standard_uncertainty: NumberOrList,
+    /// Ends of the 95 % interval by profile likelihood; `null` at an end that the data leave open.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    interval_low: Option<NumberOrList>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    interval_high: Option<NumberOrList>,
     shared_relative_uncertainty: Option<NumberOrList>,
     unit: String,
 }
@@ -205,6 +223,11 @@ fn fit_file(arguments: &Arguments, file: &Path, output: Option<&Path>) -> Result
         distribution: arguments.distribution,
         denominator: arguments.denominator,
         reduction: arguments.reduce,
+        share: arguments.share.0,
+        loss: arguments.loss,
+        roughness_box: settings::within(&arguments.bounds, "roughness"),
+        index_box: settings::within(&arguments.bounds, "refractive_index"),
+        mask: arguments.mask.clone(),
         assume_reference: arguments.reference,
         data_digest: container::measurement_digest(measurement)
             .map_err(|error| miette!("{}: {error}", file.display()))?,
@@ -289,6 +312,8 @@ fn parameter_result(parameter: &FittedParameter) -> ParameterResult {
     ParameterResult {
         value: number_or_list(&parameter.value),
         standard_uncertainty: number_or_list(&parameter.standard_uncertainty),
+        interval_low: (!parameter.interval_low.is_empty()).then(|| number_or_list(&parameter.interval_low)),
+        interval_high: (!parameter.interval_high.is_empty()).then(|| number_or_list(&parameter.interval_high)),
         shared_relative_uncertainty: (!shared.is_empty()).then(|| number_or_list(shared)),
         unit: parameter.unit.clone(),
     }
@@ -390,6 +415,21 @@ fn reduction_in_words(model: &FittedModel) -> String {
     }
 }
 
+/// The 95 % interval of one number, with an open end said so.
+fn interval_text(parameter: &ParameterResult) -> String {
+    let (Some(NumberOrList::Number(low)), Some(NumberOrList::Number(high))) =
+        (&parameter.interval_low, &parameter.interval_high)
+    else {
+        return String::new();
+    };
+    match (low, high) {
+        (Some(low), Some(high)) => format!(", 95 %: {low:.4} to {high:.4}"),
+        (Some(low), None) => format!(", 95 %: above {low:.4}"),
+        (None, Some(high)) => format!(", 95 %: below {high:.4}"),
+        (None, None) => ", 95 %: open on both sides".to_owned(),
+    }
+}
+
 fn parameter_line(term: TermKind, name: &str, parameter: &ParameterResult) -> String {
     let unit = if parameter.unit == "1" { String::new() } else { format!(" {}", parameter.unit) };
     let shared = match &parameter.shared_relative_uncertainty {
@@ -401,7 +441,8 @@ fn parameter_line(term: TermKind, name: &str, parameter: &ParameterResult) -> St
             let value = value.unwrap_or(f64::NAN);
             let known = sigma.and_then(|sigma| rounded_with_uncertainty(value, sigma));
             let known = known.unwrap_or_else(|| format!("{value:.6} ± unknown"));
-            format!("  {term:<18}{name:<18}{known}{unit}{shared}")
+            let interval = interval_text(parameter);
+            format!("  {term:<18}{name:<18}{known}{unit}{shared}{interval}")
         }
         (NumberOrList::List(values), _) => {
             let known = values.iter().flatten();

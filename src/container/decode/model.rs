@@ -15,6 +15,7 @@ pub(super) fn model(id: Id, at: &At<'_>) -> Result<Model, ReadError> {
         measurement: at.parsed(name::MEASUREMENT)?,
         data_digest: at.text(name::DATA_DIGEST)?,
         reduction: at.text(name::REDUCTION)?,
+        mask: at.optional_text(name::MASK)?,
         reference: at.parsed(name::REFERENCE)?,
         unit: at.text(name::UNIT)?,
         emission: emission_axis(at)?,
@@ -55,6 +56,8 @@ fn parameter(at: &At<'_>, name: &str) -> Result<FittedParameter, ReadError> {
         value: at.numbers(name)?,
         standard_uncertainty: at.numbers(&format!("{name}{}", name::SUFFIX_U))?,
         shared_relative_uncertainty: at.numbers_or_none(&format!("{name}{}", name::SUFFIX_SHARED))?,
+        interval_low: at.numbers_or_none(&format!("{name}{}", name::SUFFIX_LOW))?,
+        interval_high: at.numbers_or_none(&format!("{name}{}", name::SUFFIX_HIGH))?,
     })
 }
 

@@ -13,6 +13,7 @@ pub(super) fn model(model: &Model) -> Result<Group, EncodeError> {
     group.text(name::MEASUREMENT, model.measurement.as_str())?;
     group.text(name::DATA_DIGEST, &model.data_digest)?;
     group.text(name::REDUCTION, &model.reduction)?;
+    group.optional_text(name::MASK, model.mask.as_ref())?;
     group.text(name::REFERENCE, &faithful(name::REFERENCE, &model.reference)?)?;
     group.text(name::UNIT, &model.unit)?;
     group.text(name::METHOD, &model.method)?;
@@ -81,6 +82,21 @@ fn parameter(group: &mut Group, name: &str, parameter: &FittedParameter) -> Resu
             .vector(&format!("{name}{}", name::SUFFIX_SHARED), shared, &axis)
             .unit("1")
             .long_name("relative standard uncertainty from errors shared by all rows");
+    }
+    for (suffix, ends, meaning) in [
+        (name::SUFFIX_LOW, &parameter.interval_low, "lower end of the 95 % interval, NaN where the data leave it open"),
+        (
+            name::SUFFIX_HIGH,
+            &parameter.interval_high,
+            "upper end of the 95 % interval, NaN where the data leave it open",
+        ),
+    ] {
+        if !ends.is_empty() {
+            group
+                .vector(&format!("{name}{suffix}"), Data::F64(ends.clone().into()), &axis)
+                .checked_text(name::UNITS, &parameter.unit)?
+                .long_name(meaning);
+        }
     }
     Ok(())
 }

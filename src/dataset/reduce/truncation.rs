@@ -1,7 +1,7 @@
 //! Wavelengths whose usable values are a truncated sample: what lies on the floor is missing from it.
 //!
-//! Values on the floor are upper bounds and are not fitted. What is left has lost its lower noise, so that a fit of it
-//! is biased upwards. Left out of the sums are residuals that are about as large as the bounds themselves: for signals
+//! Values on the floor are upper bounds. Where each has a number and an uncertainty they are fitted as bounds, and nothing
+//! is lost. Otherwise they are left out, and what is left has lost its lower noise, so that a fit of it is biased upwards. Left out of the sums are residuals that are about as large as the bounds themselves: for signals
 //! spread over the noise about the floor, the sum over what is missing of signal times missing residual is the sum of
 //! the squared bounds (the integral of m phi(1 - m) over m is that of Phi(1 - m), m the signal and 1 the floor in units
 //! of the noise). A diffuse amplitude over n rows is then biased by about
@@ -13,6 +13,7 @@
 
 use super::{independent_sigma, usable};
 use crate::dataset::Measurement;
+use crate::dataset::bound::bound_at;
 use crate::quantity::Flag;
 
 /// A bias of this part of the stated standard uncertainty is hidden by it: it lengthens the error by 3 %.
@@ -34,7 +35,7 @@ impl Truncation {
         let mut found = Self { fair: Vec::new(), truncated: Vec::new(), empty: Vec::new() };
         for column in 0..measurement.emission.len() {
             let (count, bias) = floor_bias(measurement, rows, column);
-            if bias > TOLERATED_BIAS {
+            if bias > TOLERATED_BIAS && !is_censored(measurement, rows, column) {
                 found.truncated.push((column, count));
             } else if rows.iter().any(|row| usable(measurement, *row, column).is_finite()) {
                 found.fair.push(column);
@@ -76,6 +77,13 @@ impl Truncation {
         }
         notes
     }
+}
+
+/// True where every row below detection has a bound and an uncertainty: then the bounds are fitted as such, and nothing is
+/// truncated.
+fn is_censored(measurement: &Measurement, rows: &[usize], column: usize) -> bool {
+    let below = |row: &&usize| measurement.flags_at(**row, column).contains(Flag::BelowDetection);
+    rows.iter().filter(below).all(|row| bound_at(measurement, *row, column).is_some())
 }
 
 /// The rows below detection at an emission value, and the bias that leaving them out gives an amplitude, in its standard

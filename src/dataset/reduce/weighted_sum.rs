@@ -97,6 +97,8 @@ impl<'a> WeightedSum<'a> {
             geometry: rows.iter().filter_map(|&row| geometry_of(self.measurement, row)).collect(),
             values: Array2::from_shape_fn(shape, |(_, k)| self.value(rows[k])),
             sigma: has_sigma.then(|| Array2::from_shape_fn(shape, |(_, k)| self.sigma(rows[k]))),
+            bounds: Vec::new(),
+            record_relative: vec![0.0],
             shared_relative: vec![self.shared_relative(&rows)],
             left_out: count - rows.len(),
             left_out_emission: 0,

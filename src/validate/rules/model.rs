@@ -4,7 +4,7 @@ use super::super::Context;
 use super::super::finding::Finder;
 use crate::container::layout::name;
 use crate::container::measurement_digest;
-use crate::dataset::{FittedTerm, Model, Place, Reduction, reduce};
+use crate::dataset::{FittedParameter, FittedTerm, Mask, Model, Place, Reduction, reduce};
 
 fn models<'a>(context: &Context<'a>) -> impl Iterator<Item = (String, &'a Model)> {
     let models = context.document().map_or(&[][..], |document| &document.models);
@@ -116,12 +116,15 @@ pub(in super::super) fn residuals(context: &Context<'_>, found: &mut Finder) {
         let Some(measurement) = document.measurement(model.measurement.as_str()) else { continue };
         // Another reduction than the standard's, or data that cannot be reduced, leave nothing to compare.
         let Ok(reduction) = model.reduction.parse::<Reduction>() else { continue };
-        let Ok(data) = reduce(document, measurement, reduction) else { continue };
+        let Ok(mut data) = reduce(document, measurement, reduction) else { continue };
+        // So does a mask that only another program knows.
+        let Ok(mask) = model.mask.as_deref().unwrap_or_default().parse::<Mask>() else { continue };
+        data.apply(&mask);
         if data.emission != model.emission {
             continue;
         }
         let stored = &model.residuals;
-        let fitted = fitted_parameters(model, data.values.nrows());
+        let fitted = model.fitted_parameters();
         let Ok((_, computed)) = crate::dataset::residuals(model, &data, fitted) else { continue };
         let differs = |a: f64, b: f64| {
             let near = (a - b).abs() <= RECOMPUTED * b.abs().max(f64::MIN_POSITIVE);
@@ -145,12 +148,6 @@ pub(in super::super) fn residuals(context: &Context<'_>, found: &mut Finder) {
     }
 }
 
-/// How many parameters were fitted to the numbers: those of each emission value, and the common ones once.
-fn fitted_parameters(model: &Model, emission: usize) -> usize {
-    let parameters = model.terms.iter().flat_map(|term| &term.parameters);
-    parameters.map(|parameter| if parameter.value.len() == emission { emission } else { 1 }).sum()
-}
-
 pub(in super::super) fn complete(context: &Context<'_>, found: &mut Finder) {
     for (path, model) in models(context) {
         for emission in 0..model.emission.len() {
@@ -170,6 +167,12 @@ pub(in super::super) fn uncertainty(context: &Context<'_>, found: &mut Finder) {
                 let (found_u, expected) = (fitted.standard_uncertainty.len(), fitted.value.len());
                 if found_u != expected {
                     found.add(place, format!("{found_u} uncertainties"), format!("{expected}, one for each value"));
+                } else if let Some((suffix, at)) = wrong_interval(fitted) {
+                    let place = Place::path(format!("{path}/{}{t}/{}{p}{suffix}", name::TERM, name::PARAMETER));
+                    let (low, high) = (fitted.interval_low.get(at), fitted.interval_high.get(at));
+                    let shown = |end: Option<&f64>| end.map_or("none".to_owned(), f64::to_string);
+                    let expected = "one end for each value, the value between them, NaN at an open end";
+                    found.add(place.at_index([at]), format!("from {} to {}", shown(low), shown(high)), expected);
                 } else if let Some(at) = fitted.standard_uncertainty.iter().position(|u| *u < 0.0 || u.is_infinite()) {
                     let value = fitted.standard_uncertainty[at];
                     found.add(
@@ -181,6 +184,23 @@ pub(in super::super) fn uncertainty(context: &Context<'_>, found: &mut Finder) {
             }
         }
     }
+}
+
+/// Where the interval of a parameter is none: an end without a value, or a value beyond an end.
+fn wrong_interval(fitted: &FittedParameter) -> Option<(&'static str, usize)> {
+    let (low, high) = (&fitted.interval_low, &fitted.interval_high);
+    if low.is_empty() && high.is_empty() {
+        return None;
+    }
+    for (suffix, ends) in [(name::SUFFIX_LOW, low), (name::SUFFIX_HIGH, high)] {
+        if ends.len() != fitted.value.len() {
+            return Some((suffix, ends.len().min(fitted.value.len())));
+        }
+    }
+    // NaN compares false: an open end excludes nothing.
+    let below = fitted.value.iter().zip(low).position(|(value, low)| value < low);
+    let above = fitted.value.iter().zip(high).position(|(value, high)| value > high);
+    below.map(|at| (name::SUFFIX_LOW, at)).or(above.map(|at| (name::SUFFIX_HIGH, at)))
 }
 
 pub(in super::super) fn correlation(context: &Context<'_>, found: &mut Finder) {

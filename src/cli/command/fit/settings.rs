@@ -1,0 +1,55 @@
+//! Settings of a fit as they are spelled on the command line.
+
+use crate::fit::{Loss, Share};
+
+/// What `--share` asks for.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Sharing(pub(super) Option<Share>);
+
+/// What `--bounds` asks for.
+#[derive(Debug, Clone)]
+pub(super) struct Bounds {
+    parameter: String,
+    low: f64,
+    high: f64,
+}
+
+pub(super) fn share(text: &str) -> Result<Sharing, String> {
+    match text {
+        "shape" => Ok(Sharing(Some(Share::Shape))),
+        "shape-and-intensity" => Ok(Sharing(Some(Share::ShapeAndIntensity))),
+        "nothing" => Ok(Sharing(None)),
+        _ => Err("expected `shape`, `shape-and-intensity` or `nothing`".to_owned()),
+    }
+}
+
+pub(super) fn loss(text: &str) -> Result<Loss, String> {
+    let known = [Loss::Squares, Loss::Huber, Loss::Tukey];
+    known
+        .into_iter()
+        .find(|loss| loss.name() == text)
+        .ok_or_else(|| "expected `squares`, `huber` or `tukey`".to_owned())
+}
+
+pub(super) fn bounds(text: &str) -> Result<Bounds, String> {
+    let parts = text.split_once('=').and_then(|(name, ends)| Some((name, ends.split_once("..")?)));
+    let number = |text: &str| text.trim().parse::<f64>().ok().filter(|x| x.is_finite());
+    let expected = "expected roughness=LOW..HIGH or refractive_index=LOW..HIGH with LOW below HIGH";
+    let Some((name, (low, high))) = parts else { return Err(expected.to_owned()) };
+    let parameter = name.trim().replace('-', "_");
+    let least = match parameter.as_str() {
+        "roughness" => 0.0,
+        "refractive_index" => 1.0,
+        _ => return Err(format!("`{name}` has no bounds of its own; {expected}")),
+    };
+    match (number(low), number(high)) {
+        (Some(low), Some(high)) if least < low && low < high => Ok(Bounds { parameter, low, high }),
+        (Some(low), Some(_)) if low <= least => Err(format!("{low} is not above {least}; {expected}")),
+        _ => Err(expected.to_owned()),
+    }
+}
+
+/// The bounds of a parameter; of several the last.
+pub(super) fn within(bounds: &[Bounds], parameter: &str) -> Option<(f64, f64)> {
+    bounds.iter().rev().find(|bounds| bounds.parameter == parameter).map(|bounds| (bounds.low, bounds.high))
+}

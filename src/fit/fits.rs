@@ -1,0 +1,234 @@
+//! The fits of a measurement's emission values, together or each by itself, and what of them a model stores.
+
+use ndarray::{Array2, s};
+use rayon::prelude::*;
+
+use super::curvature::Share;
+use super::loss::Loss;
+use super::measurement::{Choice, FitOptions};
+use super::observed::{Observations, Observed};
+use super::outcome::{Fit, Stop};
+use super::profile::Interval;
+use super::solve::{DataError, Fitter};
+use super::statistics::SINGULAR;
+use crate::dataset::{Bound, FittedParameter, FittedTerm, Reduced};
+use crate::terms::{Parameter, TermKind};
+
+/// Coverage of the stored intervals.
+pub(super) const PROBABILITY: f64 = 0.95;
+
+/// One fit of all emission values, or one of each.
+#[derive(Debug)]
+pub(super) struct Fits {
+    pub(super) list: Vec<Observed>,
+    shared_intensity: bool,
+}
+
+impl Fits {
+    pub(super) fn of(fitter: &Fitter<'_>, data: &Reduced, options: &FitOptions) -> Result<Self, DataError> {
+        let bands = data.values.nrows();
+        let runs: Vec<(usize, usize)> = match options.share {
+            Some(_) => vec![(0, bands)],
+            None => (0..bands).map(|band| (band, band + 1)).collect(),
+        };
+        let fit = |&(from, to): &(usize, usize)| {
+            let bounds: Vec<Bound> = data
+                .bounds
+                .iter()
+                .filter(|bound| (from..to).contains(&bound.emission))
+                .map(|bound| Bound { emission: bound.emission - from, ..*bound })
+                .collect();
+            let observations = Observations {
+                values: data.values.slice(s![from..to, ..]),
+                sigma: data.sigma.as_ref().map(|sigma| sigma.slice(s![from..to, ..])),
+                bounds: &bounds,
+                loss: options.loss,
+            };
+            fitter.fit_observed(&observations, PROBABILITY)
+        };
+        let shared_intensity = options.share == Some(Share::ShapeAndIntensity) && bands > 1;
+        let list: Vec<Observed> = match runs.as_slice() {
+            [run] => vec![fit(run)?],
+            runs => runs.par_iter().map(fit).collect::<Result<_, _>>()?,
+        };
+        Ok(Self { list, shared_intensity })
+    }
+
+    /// These, of a diffuse term alone, after others that saw no specular one.
+    pub(super) fn after(mut self, others: &Self) -> Self {
+        for (this, other) in self.list.iter_mut().zip(&others.list) {
+            this.fit.specular_gain = other.fit.specular_gain;
+            this.fit.evaluations = other.fit.evaluations;
+        }
+        self
+    }
+
+    pub(super) fn has_specular(&self) -> bool {
+        self.list.iter().any(|observed| observed.fit.has_specular())
+    }
+
+    pub(super) fn converged(&self) -> bool {
+        self.list.iter().all(|observed| observed.settled && observed.fit.stop.is_converged())
+    }
+
+    /// True where one fit holds one emission value, and no other fit is there.
+    fn single(&self) -> bool {
+        self.list.len() == 1 && self.list[0].fit.bands.len() == 1
+    }
+
+    /// Each emission value's fit, with its place in it.
+    fn bands(&self) -> impl Iterator<Item = (&Observed, usize)> {
+        self.list.iter().flat_map(|observed| (0..observed.fit.bands.len()).map(move |band| (observed, band)))
+    }
+
+    pub(super) fn terms(&self, data: &Reduced, choice: Choice, options: &FitOptions) -> Vec<FittedTerm> {
+        let unit = data.kind.unit();
+        let mut terms = Vec::new();
+        if let Some(kind) = choice.diffuse {
+            let parameters = vec![self.amplitude(&kind.parameters()[0], unit, data, 0)];
+            terms.push(FittedTerm { kind, distribution: None, denominator: None, parameters });
+        }
+        if self.has_specular() {
+            let names = TermKind::TorranceSparrow.parameters();
+            let shape = |k: usize| {
+                let unit = names[k].unit(Some(options.distribution));
+                self.shape(&names[k], unit, k + 1)
+            };
+            terms.push(FittedTerm {
+                kind: TermKind::TorranceSparrow,
+                distribution: Some(options.distribution),
+                denominator: Some(options.denominator),
+                parameters: vec![self.amplitude(&names[0], unit, data, 1), shape(1), shape(2)],
+            });
+        }
+        terms
+    }
+
+    /// An amplitude, one per emission value or one for all.
+    fn amplitude(&self, parameter: &Parameter, unit: &str, data: &Reduced, k: usize) -> FittedParameter {
+        let all = if k == 1 && self.shared_intensity { 1 } else { usize::MAX };
+        let value = |fit: &Fit, band: usize| if k == 0 { fit.bands[band].diffuse } else { fit.bands[band].intensity };
+        let interval = |observed: &Observed| {
+            if k == 0 { observed.intervals.diffuse } else { observed.intervals.intensity }
+        };
+        let each = || self.bands().take(all);
+        let (interval_low, interval_high) = ends(each().map(|(observed, _)| interval(observed)));
+        FittedParameter {
+            name: parameter.name.to_owned(),
+            unit: unit.to_owned(),
+            value: each().map(|(observed, band)| value(&observed.fit, band)).collect(),
+            standard_uncertainty: each().map(|(observed, band)| observed.fit.standard_uncertainty(band)[k]).collect(),
+            // One amplitude of many wavelengths has what they share on average.
+            shared_relative_uncertainty: if all == 1 { Vec::new() } else { shared(data) },
+            interval_low,
+            interval_high,
+        }
+    }
+
+    /// Roughness (k = 2) or index (k = 3), one of each fit.
+    fn shape(&self, parameter: &Parameter, unit: &str, k: usize) -> FittedParameter {
+        let fits = || self.list.iter();
+        let value = |fit: &Fit| if k == 2 { fit.roughness } else { fit.refractive_index() };
+        let interval = |observed: &Observed| match k {
+            2 => observed.intervals.roughness,
+            _ => observed.intervals.index_minus_one.map(Interval::plus_one),
+        };
+        let (interval_low, interval_high) = ends(fits().map(interval));
+        let sigma = |observed: &Observed| {
+            if observed.fit.has_specular() { observed.fit.standard_uncertainty(0)[k] } else { f64::NAN }
+        };
+        FittedParameter {
+            name: parameter.name.to_owned(),
+            unit: unit.to_owned(),
+            value: fits().map(|observed| value(&observed.fit)).collect(),
+            standard_uncertainty: fits().map(sigma).collect(),
+            shared_relative_uncertainty: Vec::new(),
+            interval_low,
+            interval_high,
+        }
+    }
+
+    /// The covariance that is stored: of all parameters where there is one emission value, of the common ones where many
+    /// were fitted together; none of many fits.
+    pub(super) fn stored_covariance(&self, choice: Choice) -> (Vec<String>, Array2<f64>) {
+        let name = |kind: TermKind, k: usize| format!("{}.{}", kind.name(), kind.parameters()[k].name);
+        let mut entries: Vec<(String, usize)> = Vec::new();
+        if let ([_], Some(kind), true) = (self.list.as_slice(), choice.diffuse, self.single()) {
+            entries.push((name(kind, 0), 0));
+        }
+        if self.list.len() == 1 && self.has_specular() {
+            if self.single() || self.shared_intensity {
+                entries.push((name(TermKind::TorranceSparrow, 0), 1));
+            }
+            entries.extend([1, 2].map(|k| (name(TermKind::TorranceSparrow, k), k + 1)));
+        }
+        let covariance = Array2::from_shape_fn((entries.len(), entries.len()), |(i, j)| {
+            self.list[0].fit.bands[0].covariance[entries[i].1][entries[j].1]
+        });
+        (entries.into_iter().map(|entry| entry.0).collect(), covariance)
+    }
+
+    /// How it was done and why it stopped.
+    pub(super) fn method(&self, options: &FitOptions) -> String {
+        let cost = match options.loss {
+            Loss::Squares => "least squares, weighted with 1/sigma^2 where sigma is known".to_owned(),
+            loss => format!("least squares reweighted for the loss `{}`, its scale from the residuals", loss.name()),
+        };
+        let evaluations: usize = self.list.iter().map(|observed| observed.fit.evaluations).sum();
+        let passes = self.list.iter().map(|observed| observed.passes).max().unwrap_or(1);
+        let passes = if passes > 1 { format!(", {passes} passes") } else { String::new() };
+        let not_settled = self.list.iter().filter(|observed| !observed.settled).count();
+        let unsettled = if not_settled > 0 { ", which did not settle" } else { "" };
+        let together = match (options.share, self.list.len()) {
+            (_, 1) if self.single() => "",
+            (None, _) => "; each emission value by itself",
+            (Some(Share::Shape), _) => "; roughness and index common to all emission values",
+            (Some(Share::ShapeAndIntensity), _) => "; roughness, index and intensity common to all emission values",
+        };
+        format!(
+            "{cost}; amplitudes non-negative by variable projection; roughness and index from a 12 x 3 grid, two starts \
+             polished by Levenberg-Marquardt{together}; {} after {evaluations} evaluations{passes}{unsettled}{}",
+            self.worst_stop().text(),
+            self.singular()
+        )
+    }
+
+    /// Why the fits stopped; of several the first that did not converge.
+    fn worst_stop(&self) -> Stop {
+        let mut stops = self.list.iter().map(|observed| observed.fit.stop);
+        stops.clone().find(|stop| !stop.is_converged()).or(stops.next()).unwrap_or(Stop::Linear)
+    }
+
+    /// What decided which directions of the common parameters are called known.
+    fn singular(&self) -> String {
+        match self.list.as_slice() {
+            [one] if !one.fit.singular_values.is_empty() => {
+                let values: Vec<String> = one.fit.singular_values.iter().map(|value| format!("{value:.2e}")).collect();
+                let cut = one.fit.singular_values.iter().filter(|value| **value < SINGULAR).count();
+                format!(
+                    "; singular values of the common columns beside all others {} (scaled), cut below {SINGULAR:.0e}: {cut}",
+                    values.join(", ")
+                )
+            }
+            _ => String::new(),
+        }
+    }
+}
+
+/// Lower and upper ends as they are stored, NaN for an open one; nothing where no interval was formed.
+fn ends(intervals: impl Iterator<Item = Option<Interval>>) -> (Vec<f64>, Vec<f64>) {
+    let intervals: Vec<Option<Interval>> = intervals.collect();
+    if intervals.iter().all(Option::is_none) {
+        return (Vec::new(), Vec::new());
+    }
+    let end = |open: bool, end: f64| if open { f64::NAN } else { end };
+    let of = |interval: &Option<Interval>| {
+        interval.map_or((f64::NAN, f64::NAN), |i| (end(i.low_open, i.low), end(i.high_open, i.high)))
+    };
+    intervals.iter().map(of).unzip()
+}
+
+/// What all rows share scales every amplitude alike; nothing is stored where there is none.
+fn shared(data: &Reduced) -> Vec<f64> {
+    if data.shared_relative.iter().all(|relative| *relative == 0.0) { Vec::new() } else { data.shared_relative.clone() }
+}
