@@ -343,6 +343,7 @@ fn model(document: &Document) -> Model {
         unit: "1".to_owned(),
         emission: data.emission.clone(),
         terms: fitted_terms(),
+        nuisances: Vec::new(),
         covariance_parameters: names.map(str::to_owned).to_vec(),
         covariance: covariance.into_shared(),
         residuals: Residuals { rms: 0.0, reduced_chi_square: 0.0, count: 0, left_out: 0 },

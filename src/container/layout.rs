@@ -132,6 +132,7 @@ pub mod name {
     pub const SUFFIX_LOW: &str = "_low";
     pub const SUFFIX_HIGH: &str = "_high";
     pub const MASK: &str = "mask";
+    pub const NUISANCE: &str = "nuisance_";
     pub const COVARIANCE: &str = "covariance";
     pub const COVARIANCE_PARAMETERS: &str = "covariance_parameters";
     pub const COVARIANCE_ROW: &str = "covariance_row";

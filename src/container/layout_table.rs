@@ -92,6 +92,8 @@ pub(super) const TABLE: &[Entry] = &[
     d("/model/*/covariance_row", "int32", "1", "number of the parameter; dimension scale"),
     d("/model/*/covariance_column", "int32", "1", "number of the parameter; dimension scale"),
     d("/model/*/covariance_parameters", "string", "", "names of the parameters, as TERM.PARAMETER, or TERM:POSITION.PARAMETER where several terms are of one kind"),
+    d("/model/*/nuisance_*", "float64", "degree", "an effect of the instrument on the geometry, by its number from 0: its value; with _u its standard uncertainty"),
+    a("/model/*/nuisance_*@parameter", "string", "", "name of the effect"),
     d("/model/*/identifiability", "string", "", "what the data cannot tell, one sentence each"),
     g("/model/*/term_*", "a term, by its number from 0"),
     a("/model/*/term_*@kind", "string", "", "which term"),

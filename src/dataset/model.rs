@@ -125,6 +125,10 @@ pub struct Model {
     pub emission: EmissionAxis,
     /// The terms.
     pub terms: Vec<FittedTerm>,
+    /// Effects of the instrument on the geometry, as [`Effect`](super::Effect) names them: the terms predict what was measured
+    /// at the geometries that the instrument saw.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub nuisances: Vec<FittedParameter>,
     /// Names of the parameters in the order of the covariance, as [`Model::covariance_name`] gives them: `TERM.PARAMETER`,
     /// or `TERM:POSITION.PARAMETER` where several terms are of one kind.
     pub covariance_parameters: Vec<String>,

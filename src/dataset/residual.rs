@@ -2,7 +2,7 @@
 
 use ndarray::Array2;
 
-use super::{FittedTerm, Model, Reduced, Residuals};
+use super::{Effect, Effects, FittedTerm, Model, Reduced, Residuals};
 use crate::quantity::{Geometry, Reference};
 use crate::terms::{Denominator, Distribution, Term, TermKind, TorranceSparrow, Undefined};
 
@@ -65,6 +65,16 @@ impl FittedTerm {
 }
 
 impl Model {
+    /// What the instrument did to the geometries of the data.
+    #[must_use]
+    pub fn effects(&self) -> Effects {
+        let known = self.nuisances.iter().filter_map(|fitted| {
+            let effect = fitted.name.parse::<Effect>().ok()?;
+            fitted.value.first().map(|value| (effect, *value))
+        });
+        known.fold(Effects::default(), |effects, (effect, value)| effects.with(effect, value))
+    }
+
     /// The terms at one emission value of the fitted numbers; without a specular term whose intensity is 0 there and whose
     /// shape is undefined, which adds nothing.
     ///
@@ -113,8 +123,13 @@ pub fn predict(terms: &[Term], geometry: &Geometry, reference: &Reference) -> Re
 fn predictions(model: &Model, data: &Reduced) -> Result<Array2<f64>, TermsError> {
     let terms: Vec<Vec<Term>> =
         (0..data.values.nrows()).map(|emission| model.terms_at(emission)).collect::<Result<_, _>>()?;
+    let effects = model.effects();
+    let seen: Vec<Vec<(Geometry, f64)>> = data.geometry.iter().map(|geometry| effects.seen(geometry)).collect();
     Ok(Array2::from_shape_fn(data.values.dim(), |(emission, row)| {
-        predict(&terms[emission], &data.geometry[row], &model.reference).map_or(f64::NAN, |p| p.total())
+        let part = |(geometry, share): &(Geometry, f64)| {
+            predict(&terms[emission], geometry, &model.reference).map_or(f64::NAN, |p| share * p.total())
+        };
+        seen[row].iter().map(part).sum()
     }))
 }
 

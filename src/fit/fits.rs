@@ -4,6 +4,7 @@ use ndarray::{Array2, s};
 use rayon::prelude::*;
 
 use super::curvature::Share;
+use super::joint::{FittedEffect, Joint};
 use super::loss::Loss;
 use super::measurement::{Choice, FitOptions};
 use super::observed::{Observations, Observed};
@@ -12,6 +13,7 @@ use super::profile::Interval;
 use super::solve::{DataError, Fitter};
 use super::statistics::SINGULAR;
 use crate::dataset::{Bound, FittedParameter, FittedTerm, Reduced};
+use crate::quantity::Reference;
 use crate::terms::{Parameter, TermKind};
 
 /// Coverage of the stored intervals.
@@ -22,6 +24,10 @@ pub(super) const PROBABILITY: f64 = 0.95;
 pub(super) struct Fits {
     pub(super) list: Vec<Observed>,
     shared_intensity: bool,
+    /// True where the wavelengths of a record were taken to share its scale.
+    pub(super) correlated: bool,
+    /// The instrument's effects after the fit.
+    pub(super) effects: Vec<FittedEffect>,
 }
 
 impl Fits {
@@ -51,7 +57,78 @@ impl Fits {
             [run] => vec![fit(run)?],
             runs => runs.par_iter().map(fit).collect::<Result<_, _>>()?,
         };
-        Ok(Self { list, shared_intensity })
+        Ok(Self { list, shared_intensity, correlated: false, effects: Vec::new() })
+    }
+
+    /// Goes on to a joint fit where errors hang together or the instrument has effects; says whether that was called for and
+    /// could not be done.
+    pub(super) fn refine(
+        &mut self,
+        fitter: &Fitter<'_>,
+        data: &Reduced,
+        reference: &Reference,
+        options: &FitOptions,
+    ) -> Option<String> {
+        let bands = data.values.nrows();
+        let has_record_scale = data.record_relative.iter().any(|relative| *relative > 0.0);
+        let correlated = bands > 1 && options.share.is_some() && has_record_scale;
+        if options.nuisances.is_empty() && !correlated {
+            return None;
+        }
+        let ([observed], Some(sigma)) = (self.list.as_mut_slice(), &data.sigma) else {
+            let why =
+                "effects of the instrument were not fitted: they need uncertainties and one fit of all wavelengths";
+            return (!options.nuisances.is_empty()).then(|| why.to_owned());
+        };
+        if options.loss != Loss::Squares {
+            return Some(
+                "errors that hang together and effects of the instrument are not part of a robust fit".to_owned(),
+            );
+        }
+        let (values, sigma) = observed.working.as_ref().map_or((&data.values, sigma), |(v, s)| (v, s));
+        let joint = Joint {
+            geometry: &data.geometry,
+            reference,
+            distribution: options.distribution,
+            denominator: options.denominator,
+            has_diffuse: fitter.has_diffuse(),
+            share: options.share.unwrap_or_default(),
+            values: values.view(),
+            sigma: sigma.view(),
+            record_relative: &data.record_relative,
+            nuisances: &options.nuisances,
+            bounds: &data.bounds,
+            box_of_shape: fitter.bounds,
+        };
+        match joint.refine(&observed.fit) {
+            Some(refined) => {
+                observed.fit = refined.fit;
+                observed.intervals = refined.intervals;
+                self.correlated = correlated;
+                self.effects = refined.effects;
+                None
+            }
+            None if !observed.fit.has_specular() && options.nuisances.is_empty() => None,
+            None => Some(
+                "the joint fit found no minimum with a covariance: the fit takes the wavelengths of a record for independent \
+                 and the geometry for true"
+                    .to_owned(),
+            ),
+        }
+    }
+
+    /// The instrument's effects as a model stores them.
+    pub(super) fn nuisances(&self) -> Vec<FittedParameter> {
+        let stored = |effect: &FittedEffect| FittedParameter {
+            name: effect.effect.name().to_owned(),
+            unit: "degree".to_owned(),
+            value: vec![effect.value],
+            standard_uncertainty: vec![effect.sigma],
+            shared_relative_uncertainty: Vec::new(),
+            interval_low: Vec::new(),
+            interval_high: Vec::new(),
+        };
+        self.effects.iter().map(stored).collect()
     }
 
     /// These, of a diffuse term alone, after others that saw no specular one.
@@ -85,7 +162,7 @@ impl Fits {
         let unit = data.kind.unit();
         let mut terms = Vec::new();
         if let Some(kind) = choice.diffuse {
-            let parameters = vec![self.amplitude(&kind.parameters()[0], unit, data, 0)];
+            let parameters = vec![self.amplitude(&kind.parameters()[0], unit, data, options, 0)];
             terms.push(FittedTerm { kind, distribution: None, denominator: None, parameters });
         }
         if self.has_specular() {
@@ -98,14 +175,21 @@ impl Fits {
                 kind: TermKind::TorranceSparrow,
                 distribution: Some(options.distribution),
                 denominator: Some(options.denominator),
-                parameters: vec![self.amplitude(&names[0], unit, data, 1), shape(1), shape(2)],
+                parameters: vec![self.amplitude(&names[0], unit, data, options, 1), shape(1), shape(2)],
             });
         }
         terms
     }
 
     /// An amplitude, one per emission value or one for all.
-    fn amplitude(&self, parameter: &Parameter, unit: &str, data: &Reduced, k: usize) -> FittedParameter {
+    fn amplitude(
+        &self,
+        parameter: &Parameter,
+        unit: &str,
+        data: &Reduced,
+        options: &FitOptions,
+        k: usize,
+    ) -> FittedParameter {
         let all = if k == 1 && self.shared_intensity { 1 } else { usize::MAX };
         let value = |fit: &Fit, band: usize| if k == 0 { fit.bands[band].diffuse } else { fit.bands[band].intensity };
         let interval = |observed: &Observed| {
@@ -113,13 +197,14 @@ impl Fits {
         };
         let each = || self.bands().take(all);
         let (interval_low, interval_high) = ends(each().map(|(observed, _)| interval(observed)));
+        let values: Vec<f64> = each().map(|(observed, band)| value(&observed.fit, band)).collect();
+        let shared_relative_uncertainty = shared(data, &values, options.wavelength_shift_nm);
         FittedParameter {
             name: parameter.name.to_owned(),
             unit: unit.to_owned(),
-            value: each().map(|(observed, band)| value(&observed.fit, band)).collect(),
+            value: values,
             standard_uncertainty: each().map(|(observed, band)| observed.fit.standard_uncertainty(band)[k]).collect(),
-            // One amplitude of many wavelengths has what they share on average.
-            shared_relative_uncertainty: if all == 1 { Vec::new() } else { shared(data) },
+            shared_relative_uncertainty,
             interval_low,
             interval_high,
         }
@@ -179,6 +264,11 @@ impl Fits {
         let passes = if passes > 1 { format!(", {passes} passes") } else { String::new() };
         let not_settled = self.list.iter().filter(|observed| !observed.settled).count();
         let unsettled = if not_settled > 0 { ", which did not settle" } else { "" };
+        let correlated = if self.correlated {
+            ", the wavelengths of a record sharing its scale (generalised least squares)"
+        } else {
+            ""
+        };
         let together = match (options.share, self.list.len()) {
             (_, 1) if self.single() => "",
             (None, _) => "; each emission value by itself",
@@ -186,7 +276,7 @@ impl Fits {
             (Some(Share::ShapeAndIntensity), _) => "; roughness, index and intensity common to all emission values",
         };
         format!(
-            "{cost}; amplitudes non-negative by variable projection; roughness and index from a 12 x 3 grid, two starts \
+            "{cost}{correlated}; amplitudes non-negative by variable projection; roughness and index from a 12 x 3 grid, two starts \
              polished by Levenberg-Marquardt{together}; {} after {evaluations} evaluations{passes}{unsettled}{}",
             self.worst_stop().text(),
             self.singular()
@@ -228,7 +318,23 @@ fn ends(intervals: impl Iterator<Item = Option<Interval>>) -> (Vec<f64>, Vec<f64
     intervals.iter().map(of).unzip()
 }
 
-/// What all rows share scales every amplitude alike; nothing is stored where there is none.
-fn shared(data: &Reduced) -> Vec<f64> {
-    if data.shared_relative.iter().all(|relative| *relative == 0.0) { Vec::new() } else { data.shared_relative.clone() }
+/// What all rows share scales every amplitude alike: the reference's errors, and a shift of the wavelength, which moves a
+/// spectrum of amplitudes by its slope. Nothing is stored where there is none.
+fn shared(data: &Reduced, values: &[f64], shift_nm: f64) -> Vec<f64> {
+    // One amplitude of many wavelengths has at most what the worst of them has.
+    let of_reference: Vec<f64> = match (values.len(), data.shared_relative.len()) {
+        (1, count) if count > 1 => vec![data.shared_relative.iter().copied().fold(0.0, f64::max)],
+        _ => data.shared_relative.clone(),
+    };
+    let nm = data.emission.wavelengths().unwrap_or(&[]);
+    let slope = |k: usize| {
+        let (before, after) = (k.saturating_sub(1), (k + 1).min(values.len() - 1));
+        if nm.len() != values.len() || before == after || values[k] == 0.0 {
+            return 0.0;
+        }
+        (values[after] - values[before]) / (nm[after] - nm[before]) / values[k]
+    };
+    let all: Vec<f64> =
+        of_reference.iter().enumerate().map(|(k, relative)| relative.hypot(slope(k) * shift_nm)).collect();
+    if all.iter().all(|relative| *relative == 0.0) { Vec::new() } else { all }
 }

@@ -2,6 +2,7 @@
 
 use super::fits::Fits;
 use super::geometry_set::{GeometrySet, INDEX_BOX};
+use super::joint::FittedEffect;
 use super::left_out::LeftOut;
 use super::observed::Observed;
 use super::outcome::Fit;
@@ -17,7 +18,13 @@ const VAGUE_ROUGHNESS: f64 = 0.2;
 const TIED: f64 = 0.98;
 
 /// One sentence for each thing that a reader of the numbers must know.
-pub(super) fn findings(fits: &Fits, set: &GeometrySet, terms: Terms, data: &Reduced) -> Vec<String> {
+pub(super) fn findings(
+    fits: &Fits,
+    set: &GeometrySet,
+    terms: Terms,
+    data: &Reduced,
+    wavelength_shift_nm: f64,
+) -> Vec<String> {
     let mut left_out = LeftOut { no_value: data.left_out * data.values.nrows(), ..LeftOut::default() };
     fits.list.iter().for_each(|observed| left_out.add_all(&observed.fit.left_out));
     let mut list: Vec<String> = left_out.reasons().iter().map(|reason| format!("values left out: {reason}")).collect();
@@ -30,6 +37,13 @@ pub(super) fn findings(fits: &Fits, set: &GeometrySet, terms: Terms, data: &Redu
     }
     list.extend(bounds(data));
     list.extend(outliers(fits));
+    list.extend(fits.effects.iter().map(effect));
+    if wavelength_shift_nm > 0.0 {
+        list.push(format!(
+            "a shift of the wavelength by {wavelength_shift_nm} nm (standard uncertainty) is the same at all geometries: the \
+             scan cannot tell it from the amplitudes, whose shared uncertainty holds it by the slope of their spectrum"
+        ));
+    }
     match fits.list.as_slice() {
         [one] => list.extend(of_one(one, set, terms, has_sigma)),
         many => list.extend(of_many(many, data, terms, has_sigma)),
@@ -54,6 +68,19 @@ fn bounds(data: &Reduced) -> Option<String> {
             said.join(", ")
         )
     })
+}
+
+/// An effect of the instrument, and whether the data told more of it than was known.
+fn effect(effect: &FittedEffect) -> String {
+    let FittedEffect { effect: name, value, sigma, prior } = effect;
+    if *sigma == 0.0 {
+        return format!("{name} taken as {value} degrees");
+    }
+    let told = if *sigma > 0.9 * prior.1 { "; the data tell no more of it than was known" } else { "" };
+    format!(
+        "{name} {value:.4} ± {sigma:.4} degrees, fitted with what was known ({} ± {} degrees){told}",
+        prior.0, prior.1
+    )
 }
 
 /// What a robust loss did.

@@ -4,6 +4,7 @@ use super::curvature::Share;
 use super::fits::Fits;
 use super::geometry_set::{GeometrySet, SetError};
 use super::identifiability::findings;
+use super::joint::Nuisance;
 use super::loss::Loss;
 use super::separability::{NotSeparable, separability};
 use super::solve::{DataError, Fitter, Terms};
@@ -35,6 +36,10 @@ pub struct FitOptions {
     pub index_box: Option<(f64, f64)>,
     /// Rows to leave out.
     pub mask: Mask,
+    /// Effects of the instrument on the geometry, known or to be fitted.
+    pub nuisances: Vec<Nuisance>,
+    /// Standard uncertainty of a wavelength shift between the sample's and the reference's records, nm.
+    pub wavelength_shift_nm: f64,
     /// A reference convention to use where the measurement does not state one; recorded as an assumption.
     pub assume_reference: Option<Reference>,
     /// Digest of the measurement, stored with the model.
@@ -53,6 +58,8 @@ impl Default for FitOptions {
             roughness_box: None,
             index_box: None,
             mask: Mask::default(),
+            nuisances: Vec::new(),
+            wavelength_shift_nm: 0.0,
             assume_reference: None,
             data_digest: String::new(),
         }
@@ -163,7 +170,7 @@ pub fn fit_measurement(
 ) -> Result<Model, FitError> {
     let name = || measurement.id.to_string();
     let Prepared { choice, mut data, reference, assumed } = prepared(document, measurement, options)?;
-    let (set, fits) = fit_reduced(&name(), &data, &reference, choice.terms(), options)?;
+    let (set, fits, undone) = fit_reduced(&name(), &data, &reference, choice.terms(), options)?;
     // A geometry that took no part has no residual either, even where the sum of terms happens to have a value.
     set.undefined().iter().for_each(|&row| data.values.column_mut(row).fill(f64::NAN));
     let mut identifiability = data.notes.clone();
@@ -172,7 +179,8 @@ pub fn fit_measurement(
             .push(format!("the measurement does not state its reference; `{reference}` was assumed on request"));
     }
     identifiability.extend(not_a_ratio(&data, choice));
-    identifiability.extend(findings(&fits, &set, choice.terms(), &data));
+    identifiability.extend(undone);
+    identifiability.extend(findings(&fits, &set, choice.terms(), &data, options.wavelength_shift_nm));
     let separability = match separability(&data, &reference) {
         Ok(separability) => Some(separability),
         Err(NotSeparable::NoTable) => None,
@@ -193,6 +201,7 @@ pub fn fit_measurement(
         unit: data.kind.unit().to_owned(),
         emission: data.emission.clone(),
         terms: fits.terms(&data, choice, options),
+        nuisances: fits.nuisances(),
         covariance_parameters,
         covariance: covariance.into_shared(),
         residuals: Residuals { rms: f64::NAN, reduced_chi_square: f64::NAN, count: 0, left_out: 0 },
@@ -272,31 +281,33 @@ fn fit_reduced(
     reference: &Reference,
     terms: Terms,
     options: &FitOptions,
-) -> Result<(GeometrySet, Fits), FitError> {
+) -> Result<(GeometrySet, Fits, Option<String>), FitError> {
     let geometry_error = |source| FitError::Geometry { measurement: name.to_owned(), source };
     let data_error = |source| FitError::Data { measurement: name.to_owned(), source };
-    let fitted = |set: &GeometrySet, terms: Terms| {
+    let fitted = |set: &GeometrySet, terms: Terms| -> Result<(Fits, Option<String>), FitError> {
         let mut fitter = Fitter::new(set, terms).sharing(options.share.unwrap_or_default());
         let index = options.index_box.map(|(low, high)| (low - 1.0, high - 1.0));
         if options.roughness_box.is_some() || index.is_some() {
             let all = (f64::MIN_POSITIVE, f64::MAX);
             fitter = fitter.within(options.roughness_box.unwrap_or(all), index.unwrap_or(all));
         }
-        Fits::of(&fitter, data, options).map_err(data_error)
+        let mut fits = Fits::of(&fitter, data, options).map_err(data_error)?;
+        let undone = fits.refine(&fitter, data, reference, options);
+        Ok((fits, undone))
     };
     let diffuse = || GeometrySet::diffuse(&data.geometry, reference).map_err(geometry_error);
     if !terms.specular {
         let set = diffuse()?;
-        let fits = fitted(&set, terms)?;
-        return Ok((set, fits));
+        let (fits, undone) = fitted(&set, terms)?;
+        return Ok((set, fits, undone));
     }
     let set = GeometrySet::new(&data.geometry, reference, options.distribution, options.denominator)
         .map_err(geometry_error)?;
-    let fits = fitted(&set, terms)?;
+    let (fits, undone) = fitted(&set, terms)?;
     if fits.has_specular() || set.undefined().is_empty() || !terms.diffuse {
-        return Ok((set, fits));
+        return Ok((set, fits, undone));
     }
     let set = diffuse()?;
-    let alone = fitted(&set, Terms { diffuse: true, specular: false })?;
-    Ok((set, alone.after(&fits)))
+    let (alone, undone) = fitted(&set, Terms { diffuse: true, specular: false })?;
+    Ok((set, alone.after(&fits), undone))
 }

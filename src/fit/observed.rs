@@ -43,6 +43,9 @@ pub struct Observed {
     pub scale: Option<f64>,
     /// Indices (emission, geometry) of values that a robust loss gave less than half of their weight.
     pub outliers: Vec<(usize, usize)>,
+    /// Values and standard uncertainties \[B, N\] of which plain least squares has the same minimum; none where those are the
+    /// observations themselves.
+    pub working: Option<(Array2<f64>, Array2<f64>)>,
     /// Passes of least squares.
     pub passes: usize,
     /// True where the passes stood still in the end.
@@ -64,7 +67,15 @@ impl Fitter<'_> {
     pub fn fit_observed<'b>(&'b self, data: &Observations<'b>, probability: f64) -> Result<Observed, DataError> {
         if data.bounds.is_empty() && data.loss == Loss::Squares {
             let (fit, intervals) = self.fit_with_intervals(data.values, data.sigma, probability)?;
-            return Ok(Observed { fit, intervals, scale: None, outliers: Vec::new(), passes: 1, settled: true });
+            return Ok(Observed {
+                fit,
+                intervals,
+                scale: None,
+                outliers: Vec::new(),
+                working: None,
+                passes: 1,
+                settled: true,
+            });
         }
         Reweighted { fitter: *self, data: *data, scale: 1.0, careful: false }.fit(probability)
     }
@@ -134,7 +145,8 @@ impl Reweighted<'_> {
         let (fit, intervals) = self.finish(&fit, &predicted, loss, &pass, probability)?;
         let outliers = if robust { self.outliers(&predicted, loss) } else { Vec::new() };
         let scale = robust.then_some(self.scale);
-        Ok(Observed { fit, intervals, scale, outliers, passes, settled })
+        let working = (!robust).then_some((pass.values, pass.sigma));
+        Ok(Observed { fit, intervals, scale, outliers, working, passes, settled })
     }
 
     fn sigma(&self, at: (usize, usize)) -> f64 {

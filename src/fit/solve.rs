@@ -71,7 +71,7 @@ pub struct Fitter<'a> {
     terms: Terms,
     share: Share,
     /// Bounds of ln r and ln(n - 1).
-    bounds: [(f64, f64); 2],
+    pub(super) bounds: [(f64, f64); 2],
 }
 
 /// A whole fit, as what is compiled for several kinds of processor.

@@ -430,7 +430,7 @@ fn model(id: Id, measurements: &[Id]) -> impl Strategy<Value = Model> + use<> {
         (0_usize..3, 0_usize..3).prop_flat_map(|(rows, columns)| matrix(rows, columns)),
         (number(), number(), any::<u64>(), any::<u64>()),
     );
-    let tail = (any::<bool>(), text(), vec(text(), 0..3), of(separability()), of(text()));
+    let tail = (any::<bool>(), text(), vec(text(), 0..3), of(separability()), of(text()), vec(parameter(), 0..3));
     (head, middle, tail).prop_map(move |(head, middle, tail)| Model {
         id: id.clone(),
         title: head.0,
@@ -442,6 +442,7 @@ fn model(id: Id, measurements: &[Id]) -> impl Strategy<Value = Model> + use<> {
         unit: head.5,
         emission: head.6,
         terms: middle.0,
+        nuisances: tail.5,
         covariance_parameters: middle.1,
         covariance: middle.2.into_shared(),
         residuals: Residuals {

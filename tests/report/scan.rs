@@ -165,6 +165,7 @@ pub(crate) fn model() -> Model {
         unit: "1".to_owned(),
         emission: EmissionAxis::Band { band: Some(Band { from_nm: 500.0, to_nm: 620.0 }) },
         terms: vec![lambertian, specular],
+        nuisances: Vec::new(),
         covariance_parameters: Vec::new(),
         covariance: ndarray::ArcArray2::zeros((0, 0)),
         residuals: Residuals { rms: 0.002_713, reduced_chi_square: 1.03, count: 272, left_out: 0 },

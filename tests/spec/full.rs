@@ -89,6 +89,15 @@ pub fn full() -> Document {
     document.measurements.push(band);
     let mut model = document.models[0].clone();
     model.title = text();
+    model.nuisances = vec![FittedParameter {
+        name: "viewing-offset".to_owned(),
+        unit: "degree".to_owned(),
+        value: vec![0.1],
+        standard_uncertainty: vec![0.02],
+        shared_relative_uncertainty: Vec::new(),
+        interval_low: Vec::new(),
+        interval_high: Vec::new(),
+    }];
     model.mask = Some("theta-i>70".to_owned());
     model.identifiability = vec!["a sentence".to_owned()];
     model.terms.iter_mut().flat_map(|term| &mut term.parameters).for_each(|parameter| {

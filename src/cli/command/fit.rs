@@ -62,6 +62,10 @@ pub(crate) struct Arguments {
     /// Leave rows out: theta-i>DEGREES, theta-v>DEGREES, half-angle>DEGREES, rows:FIRST-LAST (from 0), by commas
     #[arg(long, default_value = "")]
     mask: Mask,
+    /// An effect of the instrument as NAME=VALUE (known) or NAME=VALUE,SIGMA (fitted with that prior): incidence-offset,
+    /// viewing-offset, source-size, aperture in degrees, wavelength-shift in nm; repeat for several
+    #[arg(long, value_parser = settings::nuisance)]
+    nuisance: Vec<settings::Nuisance>,
     /// Reference to assume where the file states none: same-geometry, fixed-geometry(THETA_I,THETA_V), none
     #[arg(long)]
     reference: Option<Reference>,
@@ -228,6 +232,8 @@ fn fit_file(arguments: &Arguments, file: &Path, output: Option<&Path>) -> Result
         roughness_box: settings::within(&arguments.bounds, "roughness"),
         index_box: settings::within(&arguments.bounds, "refractive_index"),
         mask: arguments.mask.clone(),
+        nuisances: arguments.nuisance.iter().filter_map(settings::Nuisance::of_geometry).collect(),
+        wavelength_shift_nm: settings::wavelength_shift(&arguments.nuisance),
         assume_reference: arguments.reference,
         data_digest: container::measurement_digest(measurement)
             .map_err(|error| miette!("{}: {error}", file.display()))?,

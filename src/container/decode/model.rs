@@ -20,6 +20,7 @@ pub(super) fn model(id: Id, at: &At<'_>) -> Result<Model, ReadError> {
         unit: at.text(name::UNIT)?,
         emission: emission_axis(at)?,
         terms: at.numbered(name::TERM).map(|at| term(&at)).collect::<Result<_, _>>()?,
+        nuisances: parameters(at, name::NUISANCE)?,
         covariance_parameters: at.texts(name::COVARIANCE_PARAMETERS)?,
         covariance: matrix(at, name::COVARIANCE, numbers)?,
         residuals: Residuals {
@@ -36,16 +37,21 @@ pub(super) fn model(id: Id, at: &At<'_>) -> Result<Model, ReadError> {
 }
 
 fn term(at: &At<'_>) -> Result<FittedTerm, ReadError> {
-    let parameters = (0..)
-        .map(|position: usize| format!("{}{position}", name::PARAMETER))
-        .take_while(|name| at.group.dataset(name).is_some())
-        .map(|name| parameter(at, &name));
     Ok(FittedTerm {
         kind: at.parsed(name::KIND)?,
         distribution: at.optional_parsed(name::DISTRIBUTION)?,
         denominator: at.optional_parsed(name::DENOMINATOR)?,
-        parameters: parameters.collect::<Result<_, _>>()?,
+        parameters: parameters(at, name::PARAMETER)?,
     })
+}
+
+/// Parameters by their number from 0.
+fn parameters(at: &At<'_>, prefix: &str) -> Result<Vec<FittedParameter>, ReadError> {
+    (0..)
+        .map(|position: usize| format!("{prefix}{position}"))
+        .take_while(|name| at.group.dataset(name).is_some())
+        .map(|name| parameter(at, &name))
+        .collect()
 }
 
 fn parameter(at: &At<'_>, name: &str) -> Result<FittedParameter, ReadError> {

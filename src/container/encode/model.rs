@@ -30,6 +30,9 @@ pub(super) fn model(model: &Model) -> Result<Group, EncodeError> {
     for (position, fitted) in model.terms.iter().enumerate() {
         group.groups.push((format!("{}{position}", name::TERM), term(fitted)?));
     }
+    for (position, fitted) in model.nuisances.iter().enumerate() {
+        parameter(&mut group, &format!("{}{position}", name::NUISANCE), fitted)?;
+    }
     if let Some(check) = &model.separability {
         group.groups.push((name::SEPARABILITY.to_owned(), separability(check, &model.unit)?));
     }

@@ -1,5 +1,6 @@
 //! Settings of a fit as they are spelled on the command line.
 
+use crate::dataset::Effect;
 use crate::fit::{Loss, Share};
 
 /// What `--share` asks for.
@@ -47,6 +48,48 @@ pub(super) fn bounds(text: &str) -> Result<Bounds, String> {
         (Some(low), Some(_)) if low <= least => Err(format!("{low} is not above {least}; {expected}")),
         _ => Err(expected.to_owned()),
     }
+}
+
+/// What `--nuisance` asks for; no effect for a shift of the wavelength.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Nuisance {
+    effect: Option<Effect>,
+    value: f64,
+    sigma: f64,
+}
+
+impl Nuisance {
+    pub(super) fn of_geometry(&self) -> Option<crate::fit::Nuisance> {
+        self.effect.map(|effect| crate::fit::Nuisance { effect, value: self.value, sigma: self.sigma })
+    }
+}
+
+pub(super) fn nuisance(text: &str) -> Result<Nuisance, String> {
+    let expected = "expected NAME=VALUE or NAME=VALUE,SIGMA with SIGMA above 0";
+    let (name, numbers) = text.split_once('=').ok_or(expected)?;
+    let (value, sigma) = numbers.split_once(',').unwrap_or((numbers, "0"));
+    let number = |text: &str| text.trim().parse::<f64>().ok().filter(|x| x.is_finite());
+    let (Some(value), Some(sigma)) = (number(value), number(sigma)) else { return Err(expected.to_owned()) };
+    if sigma < 0.0 || (sigma == 0.0 && numbers.contains(',')) {
+        return Err(expected.to_owned());
+    }
+    let effect = match name.trim() {
+        "wavelength-shift" if value == 0.0 && sigma > 0.0 => None,
+        "wavelength-shift" => {
+            return Err("a known shift belongs into the file's actual wavelengths; expected wavelength-shift=0,SIGMA"
+                .to_owned());
+        }
+        name => Some(name.parse::<Effect>().map_err(|error| error.to_string())?),
+    };
+    if effect.is_some_and(Effect::is_size) && value < 0.0 {
+        return Err(format!("a size of {value} degrees; expected 0 or more"));
+    }
+    Ok(Nuisance { effect, value, sigma })
+}
+
+/// The standard uncertainty of a shift of the wavelength, nm.
+pub(super) fn wavelength_shift(nuisances: &[Nuisance]) -> f64 {
+    nuisances.iter().filter(|nuisance| nuisance.effect.is_none()).map(|nuisance| nuisance.sigma).fold(0.0, f64::hypot)
 }
 
 /// The bounds of a parameter; of several the last.
