@@ -1,9 +1,13 @@
 //! Fits of values that are not all alike: bounds beside values, and outliers among them.
 
+use std::collections::HashSet;
+
 use ndarray::{Array2, ArrayView2};
 
 use super::columns::{Columns, Point};
+use super::left_out::reason;
 use super::loss::{Loss, Side, Working, expected, one_sided};
+use super::magnitude;
 use super::outcome::Fit;
 use super::profile::Intervals;
 use super::solve::{DataError, Fitter};
@@ -14,6 +18,11 @@ const MOST_PASSES: usize = 200;
 const SETTLED: f64 = 1e-6;
 /// The normal distribution's standard deviation over its median absolute deviation.
 const MEDIAN_TO_SIGMA: f64 = 1.482_602_218_505_602;
+/// The least scale of residuals over the largest value, each in its uncertainties: of values without noise any will do that
+/// is not 0 and lets the passes stand still.
+const LEAST_SCALE: f64 = 1e-8;
+/// The least mean curvature of a loss: where most values are outliers nothing is known.
+const LEAST_CURVED: f64 = 0.1;
 /// An outlier is what has less than this of its weight.
 const OUTLYING: f64 = 0.5;
 
@@ -39,7 +48,7 @@ pub struct Observations<'a> {
     pub values: ArrayView2<'a, f64>,
     /// Their standard uncertainties \[B, N\], if known.
     pub sigma: Option<ArrayView2<'a, f64>>,
-    /// Readings of which one side is known; where one is listed, `values` holds NaN.
+    /// Readings of which one side is known. What `values` holds in the place of one does not count.
     pub bounds: &'a [Bound],
     /// What a residual costs.
     pub loss: Loss,
@@ -73,14 +82,18 @@ struct Pass {
 impl Fitter<'_> {
     /// Fits observations, with intervals of the given probability.
     ///
+    /// A bound replaces what `values` holds in its place. One that is no number, or whose uncertainty is none, is left out
+    /// as a value would be.
+    ///
     /// # Errors
-    /// As [`Fitter::fit`].
-    pub fn fit_observed<'b>(&'b self, data: &Observations<'b>, probability: f64) -> Result<Observed, DataError> {
+    /// As [`Fitter::fit`]; a bound that has no place, or a place that another has, and bounds beside values without
+    /// uncertainties are errors, too.
+    pub fn fit_observed(&self, data: &Observations<'_>, probability: f64) -> Result<Observed, DataError> {
         if data.bounds.is_empty() && data.loss == Loss::Squares {
             let (fit, intervals) = self.fit_with_intervals(data.values, data.sigma, probability)?;
             return Ok(Observed { fit, intervals, scale: None, outliers: Vec::new(), passes: 1, settled: true });
         }
-        Reweighted { fitter: *self, data: *data, scale: 1.0, careful: false }.fit(probability)
+        Reweighted::new(*self, data)?.fit(probability)
     }
 
     /// The predicted values \[B, N\] of a fit; NaN at a geometry where a term is undefined.
@@ -105,16 +118,49 @@ impl Fitter<'_> {
 /// The passes of one fit.
 struct Reweighted<'a> {
     fitter: Fitter<'a>,
-    data: Observations<'a>,
+    /// Values; none where there is a bound.
+    values: Array2<f64>,
+    /// Their standard uncertainties, 1 where none are stated, and in the place of a bound that of the bound.
+    sigma: Array2<f64>,
+    /// The bounds that can be used.
+    bounds: Vec<Bound>,
+    loss: Loss,
     /// Standard deviation of the residuals in units of the stated uncertainties.
     scale: f64,
     /// True where a step by curvature went up: from then on bounds are worked by their expected reading.
     careful: bool,
 }
 
-impl Reweighted<'_> {
+impl<'a> Reweighted<'a> {
+    fn new(fitter: Fitter<'a>, data: &Observations<'_>) -> Result<Self, DataError> {
+        fitter.check_shape(data.values, data.sigma)?;
+        let (mut values, mut placed) = (data.values.to_owned(), HashSet::new());
+        let mut sigma = data.sigma.map_or_else(|| Array2::ones(values.dim()), |sigma| sigma.to_owned());
+        let mut bounds = Vec::with_capacity(data.bounds.len());
+        for bound in data.bounds {
+            let at = (bound.emission, bound.geometry);
+            let misplaced = |problem| DataError::Bound { emission: at.0, geometry: at.1, problem };
+            if at.0 >= values.nrows() || at.1 >= values.ncols() {
+                return Err(misplaced("there is no such value"));
+            }
+            if !placed.insert(at) {
+                return Err(misplaced("there is another bound for the same value; one of the two says less"));
+            }
+            if data.sigma.is_none() {
+                return Err(misplaced("the values beside it have no uncertainties, so that its weight is not known"));
+            }
+            (values[at], sigma[at]) = (bound.bound, bound.sigma);
+            if reason(bound.bound, Some(bound.sigma)).is_none() {
+                bounds.push(*bound);
+            }
+        }
+        magnitude::check(values.view(), Some(sigma.view()))?;
+        bounds.iter().for_each(|bound| values[(bound.emission, bound.geometry)] = f64::NAN);
+        Ok(Self { fitter, values, sigma, bounds, loss: data.loss, scale: 1.0, careful: false })
+    }
+
     fn fit(mut self, probability: f64) -> Result<Observed, DataError> {
-        let robust = self.data.loss != Loss::Squares;
+        let robust = self.loss != Loss::Squares;
         let mut loss = if robust { Loss::Huber } else { Loss::Squares };
         let mut pass = self.first();
         let mut predicted: Option<Array2<f64>> = None;
@@ -134,9 +180,9 @@ impl Reweighted<'_> {
             cost = pass.cost;
             predicted = Some(next);
             let stands = moved < SETTLED;
-            if stands && loss != self.data.loss {
+            if stands && loss != self.loss {
                 // Tukey's loss has minima of its own; Huber's has one, and leads to the right one of them.
-                (loss, predicted) = (self.data.loss, None);
+                (loss, predicted) = (self.loss, None);
                 pass = self.worked(&self.fitter.predicted(&fit), loss);
                 continue;
             }
@@ -145,20 +191,19 @@ impl Reweighted<'_> {
             }
         };
         let predicted = self.fitter.predicted(&fit);
+        // An expected reading is known less well than a reading: the covariance is that of the curvature.
+        self.careful = false;
+        let pass = self.worked(&predicted, loss);
         let (fit, intervals) = self.finish(&fit, &predicted, loss, &pass, probability)?;
         let outliers = if robust { self.outliers(&predicted, loss) } else { Vec::new() };
         let scale = robust.then_some(self.scale);
         Ok(Observed { fit, intervals, scale, outliers, passes, settled })
     }
 
-    fn sigma(&self, at: (usize, usize)) -> f64 {
-        self.data.sigma.map_or(1.0, |sigma| sigma[at])
-    }
-
     /// The values as they are, and bounds by what a reading on their side of nothing (or of the bound) would be.
     fn first(&self) -> Pass {
-        let mut pass = Pass { values: self.data.values.to_owned(), sigma: self.stated(), cost: f64::INFINITY };
-        for bound in self.data.bounds {
+        let mut pass = Pass { values: self.values.clone(), sigma: self.sigma.clone(), cost: f64::INFINITY };
+        for bound in &self.bounds {
             let (at, limit) = ((bound.emission, bound.geometry), bound.bound / bound.sigma);
             let start = if bound.side == Side::AtMost { limit.min(0.0) } else { limit };
             pass.values[at] = bound.sigma * expected(bound.side, start, limit);
@@ -167,26 +212,20 @@ impl Reweighted<'_> {
         pass
     }
 
-    fn stated(&self) -> Array2<f64> {
-        Array2::from_shape_fn(self.data.values.dim(), |at| self.sigma(at))
-    }
-
     /// Working values and weights at a prediction.
     fn worked(&self, predicted: &Array2<f64>, loss: Loss) -> Pass {
-        let mut pass = Pass { values: self.data.values.to_owned(), sigma: self.stated(), cost: 0.0 };
+        let mut pass = Pass { values: self.values.clone(), sigma: self.sigma.clone(), cost: 0.0 };
         if loss != Loss::Squares {
             for (at, sigma) in pass.sigma.indexed_iter_mut() {
-                let u = (self.data.values[at] - predicted[at]) / (self.scale * *sigma);
+                let u = (self.values[at] - predicted[at]) / (self.scale * *sigma);
                 if u.is_finite() {
                     *sigma *= self.scale / loss.weight(u).sqrt();
                 }
             }
         } else {
-            let residual = |(at, value): ((usize, usize), &f64)| (value - predicted[at]) / self.sigma(at);
-            let costs = self.data.values.indexed_iter().map(residual).map(|u| u * u);
-            pass.cost = costs.filter(|cost| cost.is_finite()).sum();
+            pass.cost = self.residuals(predicted).into_iter().map(|(_, u)| u * u).sum();
         }
-        for bound in self.data.bounds {
+        for bound in &self.bounds {
             let at = (bound.emission, bound.geometry);
             let sigma = bound.sigma * self.scale;
             let (mu, limit) = (predicted[at] / sigma, bound.bound / sigma);
@@ -206,13 +245,14 @@ impl Reweighted<'_> {
 
     /// The largest move of a prediction, in standard uncertainties.
     fn moved(&self, last: &Array2<f64>, next: &Array2<f64>) -> f64 {
-        let moves = next.indexed_iter().map(|(at, next)| (next - last[at]).abs() / (self.sigma(at) * self.scale));
+        let moves = next.indexed_iter().map(|(at, next)| (next - last[at]).abs() / (self.sigma[at] * self.scale));
         moves.filter(|moved| moved.is_finite()).fold(0.0, f64::max)
     }
 
     fn residuals(&self, predicted: &Array2<f64>) -> Vec<((usize, usize), f64)> {
-        let residual = |(at, value): ((usize, usize), &f64)| (at, (value - predicted[at]) / self.sigma(at));
-        self.data.values.indexed_iter().map(residual).filter(|(_, u)| u.is_finite()).collect()
+        let takes_part = |&(at, value): &((usize, usize), &f64)| reason(*value, Some(self.sigma[at])).is_none();
+        let residual = |(at, value): ((usize, usize), &f64)| (at, (value - predicted[at]) / self.sigma[at]);
+        self.values.indexed_iter().filter(takes_part).map(residual).filter(|(_, u)| u.is_finite()).collect()
     }
 
     /// From the median absolute residual, with the degrees of freedom that the parameters took.
@@ -225,8 +265,14 @@ impl Reweighted<'_> {
             return 1.0;
         }
         let median = *sizes.select_nth_unstable_by(middle, f64::total_cmp).1;
-        // Values without noise: then any scale will do that is not 0.
-        (MEDIAN_TO_SIGMA * median * lost).max(1e-9)
+        (MEDIAN_TO_SIGMA * median * lost).max(self.least_scale())
+    }
+
+    /// What stands for the scale of values without noise.
+    fn least_scale(&self) -> f64 {
+        let sizes = self.values.indexed_iter().map(|(at, value)| (value / self.sigma[at]).abs());
+        let largest = sizes.filter(|size| size.is_finite()).fold(0.0, f64::max);
+        if largest > 0.0 { LEAST_SCALE * largest } else { 1.0 }
     }
 
     fn outliers(&self, predicted: &Array2<f64>, loss: Loss) -> Vec<(usize, usize)> {
@@ -245,17 +291,13 @@ impl Reweighted<'_> {
     ) -> Result<(Fit, Intervals), DataError> {
         let (mut values, mut sigma) = (pass.values.clone(), pass.sigma.clone());
         if loss != Loss::Squares {
-            // Least squares of the predictions themselves have the solution for their minimum, and the variance of the
-            // estimate (Huber 1981, 7.6) for theirs where each value has this uncertainty.
-            let factor = self.spread(predicted, loss);
-            values.assign(predicted);
-            values.zip_mut_with(&self.data.values, |value, measured| {
-                *value = if measured.is_finite() { *value } else { f64::NAN };
-            });
-            sigma = self.stated().mapv(|sigma| factor * sigma);
-            for bound in self.data.bounds {
-                let at = (bound.emission, bound.geometry);
-                (values[at], sigma[at]) = (predicted[at], pass.sigma[at]);
+            // Least squares of pseudo-values have the solution for their minimum, also where that lies on a bound, and the
+            // variance of the estimate for theirs (Huber 1981, 7.6 and 7.10).
+            let Spread { scatter, curved } = self.spread(predicted, loss);
+            for ((emission, geometry), u) in self.residuals(predicted) {
+                let (at, u) = ((emission, geometry), u / self.scale);
+                values[at] = predicted[at] + loss.weight(u) * u * self.scale * self.sigma[at] / curved;
+                sigma[at] = scatter * self.sigma[at];
             }
         }
         let (mut fit, intervals) = self.fitter.fit_with_intervals(values.view(), Some(sigma.view()), probability)?;
@@ -270,13 +312,13 @@ impl Reweighted<'_> {
             fit.bands[*emission].count += 1;
         }
         fit.chi_square = fit.bands.iter().map(|band| band.chi_square).sum();
-        let bounds = self.data.bounds.len() as f64;
+        let took_part = |bound: &&Bound| predicted[(bound.emission, bound.geometry)].is_finite();
+        let bounds = self.bounds.iter().filter(took_part).count() as f64;
         fit.degrees_of_freedom = (fit.degrees_of_freedom - bounds).max(1.0);
         Ok((fit, intervals))
     }
 
-    /// The standard deviation that a value of unit uncertainty seems to have for the estimate's variance.
-    fn spread(&self, predicted: &Array2<f64>, loss: Loss) -> f64 {
+    fn spread(&self, predicted: &Array2<f64>, loss: Loss) -> Spread {
         let residuals = self.residuals(predicted);
         let count = residuals.len() as f64;
         let freedom = (count - self.fitter.parameters(predicted.nrows()) as f64).max(1.0);
@@ -286,6 +328,15 @@ impl Reweighted<'_> {
             square += (loss.weight(u) * u).powi(2);
             curved += loss.curvature(u);
         }
-        self.scale * (square / freedom).sqrt() / (curved / count).max(0.1)
+        let curved = (curved / count).max(LEAST_CURVED);
+        Spread { scatter: (self.scale * (square / freedom).sqrt() / curved).max(self.least_scale()), curved }
     }
+}
+
+/// What a robust loss makes of the residuals.
+struct Spread {
+    /// The standard deviation that a value of unit uncertainty seems to have for the variance of the estimate.
+    scatter: f64,
+    /// The mean curvature of the loss.
+    curved: f64,
 }
