@@ -32,6 +32,7 @@ mod polish;
 mod products;
 mod profile;
 mod repeats;
+mod reweighted;
 mod samples;
 mod separability;
 mod solve;

@@ -87,9 +87,14 @@ impl<'a> Shown<'a> {
     fn spectral_figures(&self) -> Drawn {
         let mut drawn = Drawn::default();
         let Some(nm) = self.wavelengths() else { return drawn };
+        let measurement = self.document.measurement(self.model.measurement.as_str());
+        let measured = measurement.and_then(|one| one.emission.wavelengths()).unwrap_or(nm);
+        let reduced = self.of.diagnosis.reduced_chi_square();
+        // A measured wavelength without a model is a gap.
+        let at = |one: &f64| nm.iter().position(|other| other == one).map_or(f64::NAN, |emission| reduced[emission]);
         let points = Points {
-            x: nm.to_vec(),
-            y: self.of.diagnosis.reduced_chi_square(),
+            x: measured.to_vec(),
+            y: measured.iter().map(at).collect(),
             error: Vec::new(),
             name: "each wavelength".to_owned(),
             error_name: String::new(),
@@ -109,7 +114,6 @@ impl<'a> Shown<'a> {
                 .to_owned(),
         };
         drawn.take(line_in_band(&points, Some(&one), &text));
-        let measurement = self.document.measurement(self.model.measurement.as_str());
         take_parameter_spectra(&mut drawn, self.model, measurement, &self.subject);
         drawn
     }

@@ -26,7 +26,6 @@ fn an_interval_whose_parameter_ended_on_its_bound_is_open_there_and_closed_on_th
     let (values, sigma) = measure(&metal, &grid, 0.02, &mut Random::new(1));
     for loss in LOSSES {
         let Observed { fit, intervals, .. } = observe(&set, &values, Some(&sigma), loss).unwrap();
-        println!("{} {fit:?} {:?}", loss.name(), intervals.index_minus_one);
         assert_eq!((fit.stop, fit.at_bound), (Stop::AtBound, [false, true]), "{}", loss.name());
         let index = intervals.index_minus_one.unwrap();
         assert!(index.high_open && !index.low_open && index.contains(30.0), "{}: {index:?}", loss.name());

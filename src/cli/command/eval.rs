@@ -1,6 +1,7 @@
 //! `bbrf eval`: forward values of a model over a list of geometries.
 
-use std::collections::BTreeSet;
+mod uncertainty;
+
 use std::path::PathBuf;
 
 use miette::miette;
@@ -10,7 +11,7 @@ use serde::Serialize;
 use crate::cli::exit::{CommandResult, Outcome};
 use crate::cli::model_source::{Loaded, ValueMeaning, load};
 use crate::cli::output::{print_json, print_message, print_text};
-use crate::dataset::{ParameterCovariance, PredictionUncertainty, predict};
+use crate::dataset::predict;
 use crate::import::{GeometryRow, read_geometries};
 use crate::quantity::Reference;
 use crate::terms::{Factors, Term, TermKind, TorranceSparrow};
@@ -108,12 +109,12 @@ pub(crate) fn run(arguments: &Arguments) -> CommandResult {
             arguments.model
         ));
     }
-    let mut unknown = Unknown::default();
+    let mut unknown = uncertainty::Unknown::default();
     for geometry in &geometries {
         for ((emission_nm, terms), covariance) in bands.iter().zip(&covariance) {
             let mut row = evaluate(geometry, *emission_nm, terms, specular);
             if arguments.uncertainty {
-                add_uncertainty(&mut row.0, geometry, terms, covariance, &mut unknown);
+                uncertainty::add(&mut row.0, geometry, terms, covariance, &mut unknown);
             }
             if let Err(problem) = &row.1 {
                 let file = arguments.geometry.display();
@@ -175,57 +176,6 @@ fn evaluate(
         signed: row.signed,
     };
     (result, prediction.map(|_| ()).map_err(|undefined| undefined.to_string()))
-}
-
-/// Values without an uncertainty, and what of the covariance they lack.
-#[derive(Default)]
-struct Unknown {
-    count: usize,
-    parameters: BTreeSet<String>,
-}
-
-impl Unknown {
-    fn take(&mut self, uncertainty: Option<PredictionUncertainty>) -> Option<PredictionUncertainty> {
-        if let Some(uncertainty) = uncertainty.as_ref().filter(|uncertainty| uncertainty.standard.is_none()) {
-            self.count += 1;
-            self.parameters.extend(uncertainty.unknown.iter().cloned());
-        }
-        uncertainty
-    }
-
-    fn print(&self, model: &str) {
-        if self.count > 0 {
-            let parameters = self.parameters.iter().cloned().collect::<Vec<_>>().join(", ");
-            print_message(&format!(
-                "bbrf: {model}: {} values have no standard uncertainty, because the model holds no covariance of {parameters}",
-                self.count
-            ));
-        }
-    }
-}
-
-/// The uncertainty of the elastic sum, and of the luminescent one where there is one.
-fn add_uncertainty(
-    result: &mut EvalRow,
-    row: &GeometryRow,
-    terms: &[Term],
-    covariance: &ParameterCovariance,
-    unknown: &mut Unknown,
-) {
-    let is_luminescent = |kind: TermKind| kind == TermKind::Luminescent;
-    let of = |counts: &dyn Fn(TermKind) -> bool| {
-        covariance.of_prediction(terms, &row.geometry, &Reference::None, counts).ok()
-    };
-    // What has no value has no uncertainty either, and the reason was given.
-    let has_elastic = terms.iter().any(|term| !is_luminescent(term.kind()));
-    let elastic = unknown.take(of(&|kind| !is_luminescent(kind)).filter(|_| result.value.is_some()));
-    let luminescent = unknown.take(of(&is_luminescent).filter(|_| result.luminescent.is_some()));
-    result.standard_uncertainty = Some(elastic.as_ref().and_then(|one| one.standard));
-    if result.luminescent.is_some() {
-        result.luminescent_standard_uncertainty = Some(luminescent.as_ref().and_then(|one| one.standard));
-    }
-    let shared = if has_elastic { elastic } else { luminescent };
-    result.shared_relative_uncertainty = shared.and_then(|one| one.shared_relative);
 }
 
 /// CSV: the angle columns as they came, then the values, numbers in their shortest form that reads back.

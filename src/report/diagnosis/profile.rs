@@ -1,5 +1,6 @@
 //! The profile of a parameter beside the parabola of its standard uncertainty, with the interval that follows from it.
 
+use kuva::render::color::Color;
 use kuva::render::render::TextAnchor;
 
 use super::Shown;
@@ -60,9 +61,9 @@ pub(super) fn figure(shown: &Shown<'_>, curve: &ProfileCurve) -> Result<Figure, 
     if sigma.is_finite() && sigma > 0.0 {
         let at = |k: usize| from + (to - from) * k as f64 / STEPS as f64;
         let parabola = (0..=STEPS).map(|k| (at(k), ((at(k) - offset - curve.best) / sigma).powi(2)));
-        draw_below(&mut canvas, &frame, parabola.collect(), top, FITTED);
+        draw_below(&mut canvas, &frame, parabola.collect(), top, (FITTED, 6.0));
     }
-    draw_below(&mut canvas, &frame, points.clone(), top, MEASURED);
+    draw_below(&mut canvas, &frame, points.clone(), top, (MEASURED, 2.2));
     points.iter().filter(|point| point.1 <= top).for_each(|(x, y)| canvas.dot(frame.point(*x, *y), 2.6, MEASURED));
     frame.draw_axes(&mut canvas, &text.labels());
     draw_legend(&mut canvas, &frame, curve);
@@ -75,8 +76,8 @@ fn draw_levels(canvas: &mut Canvas, frame: &Frame, curve: &ProfileCurve, offset:
     let (_, level) = frame.point(0.0, curve.level);
     canvas.line((area.left, level), (area.right(), level), INK, 1.4);
     let label = format!("95 %: {}", number((curve.level * 1000.0).round() / 1000.0));
-    canvas.text((area.right() - 6.0, level - 6.0), &label, Style::new(TICK_SIZE, TextAnchor::End));
     let (best, _) = frame.point(curve.best + offset, 0.0);
+    canvas.text((best + 6.0, level - 6.0), &label, Style::new(TICK_SIZE, TextAnchor::Start));
     canvas.line((best, area.top), (best, area.bottom()), MUTED, 1.0);
     let ends = [(curve.interval.low, curve.interval.low_open), (curve.interval.high, curve.interval.high_open)];
     for (value, is_open) in ends {
@@ -94,21 +95,15 @@ fn draw_levels(canvas: &mut Canvas, frame: &Frame, curve: &ProfileCurve, offset:
 }
 
 /// A curve as far as it stays in the frame.
-fn draw_below(
-    canvas: &mut Canvas,
-    frame: &Frame,
-    points: Vec<(f64, f64)>,
-    top: f64,
-    colour: kuva::render::color::Color,
-) {
+fn draw_below(canvas: &mut Canvas, frame: &Frame, points: Vec<(f64, f64)>, top: f64, (colour, width): (Color, f64)) {
     for piece in points.split(|(_, y)| !(*y <= top)).filter(|piece| piece.len() > 1) {
-        canvas.polyline(piece.iter().map(|(x, y)| frame.point(*x, *y)).collect(), colour.clone(), 2.2);
+        canvas.polyline(piece.iter().map(|(x, y)| frame.point(*x, *y)).collect(), colour.clone(), width);
     }
 }
 
 fn draw_legend(canvas: &mut Canvas, frame: &Frame, curve: &ProfileCurve) {
     let area = frame.area;
-    let mut entry = |line: usize, left: f64, colour: kuva::render::color::Color, width: f64, text: &str| {
+    let mut entry = |line: usize, left: f64, colour: Color, width: f64, text: &str| {
         let y = area.bottom() + 74.0 + 22.0 * line as f64;
         canvas.line((area.left + left, y - 5.0), (area.left + left + 26.0, y - 5.0), colour, width);
         canvas.text((area.left + left + 34.0, y), text, Style::new(TICK_SIZE, TextAnchor::Start));
@@ -119,7 +114,7 @@ fn draw_legend(canvas: &mut Canvas, frame: &Frame, curve: &ProfileCurve) {
     } else {
         "no parabola: it has no standard uncertainty"
     };
-    entry(0, 260.0, FITTED, 2.2, parabola);
+    entry(0, 260.0, FITTED, 6.0, parabola);
     if !curve.interval.is_closed() {
         entry(1, 0.0, HATCH, 4.0, "end of what can be searched: the interval is open there");
     }
