@@ -5,9 +5,9 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::opened::open;
-use crate::dataset::{Document, Model};
+use crate::dataset::{Document, Model, ParameterCovariance};
 use crate::quantity::Reference;
-use crate::terms::Term;
+use crate::terms::{Term, TermKind};
 
 /// What `value` is.
 const FACTOR_MEANING: &str = "Y/E, the sum of the elastic terms: pi times the radiance over the irradiance of a surface across \
@@ -20,6 +20,13 @@ const OTHER_MEANING: &str = "the sum of the elastic terms in the unit of the fit
 pub(crate) struct ModelJson {
     /// The terms.
     terms: Vec<Term>,
+    /// Names of the parameters in the order of `covariance`: `TERM.PARAMETER` as in `lambertian.albedo`, or
+    /// `TERM:POSITION.PARAMETER` where several terms are of one kind.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    covariance_parameters: Option<Vec<String>>,
+    /// Covariance of these parameters, for `--uncertainty`; `null` where it is not known.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    covariance: Option<Vec<Vec<Option<f64>>>>,
 }
 
 /// What the column `value` holds.
@@ -43,6 +50,8 @@ pub(crate) type Bands = Vec<(Option<f64>, Vec<Term>)>;
 /// A model and what its values mean.
 pub(crate) struct Loaded {
     pub(crate) bands: Bands,
+    /// What is known of their parameters' covariance, one per emission value.
+    pub(crate) covariance: Vec<ParameterCovariance>,
     pub(crate) value: ValueMeaning,
     /// The reference that it was fitted under; `None` for a model in JSON.
     pub(crate) reference: Option<Reference>,
@@ -75,7 +84,8 @@ pub(crate) fn load(model: &str) -> Result<Loaded, miette::Report> {
             Ok((nm.map(|nm| nm[emission]), terms))
         })
         .collect::<Result<Bands, miette::Report>>()?;
-    Ok(Loaded { bands, value: meaning(&document, model), reference: Some(model.reference) })
+    let covariance = (0..model.emission.len()).map(|emission| model.parameter_covariance(emission)).collect();
+    Ok(Loaded { bands, covariance, value: meaning(&document, model), reference: Some(model.reference) })
 }
 
 fn meaning(document: &Document, model: &Model) -> ValueMeaning {
@@ -109,6 +119,7 @@ fn from_json(path: &str, bytes: &[u8]) -> Result<Loaded, miette::Report> {
     if model.terms.is_empty() {
         return Err(miette!("{path}: `terms` is empty; a model needs at least one term"));
     }
+    let covariance = vec![json_covariance(&model).map_err(|problem| miette!("{path}: {problem}"))?];
     let value = ValueMeaning {
         meaning: FACTOR_MEANING.to_owned(),
         reference: Reference::None.to_string(),
@@ -116,5 +127,44 @@ fn from_json(path: &str, bytes: &[u8]) -> Result<Loaded, miette::Report> {
         reduction: None,
         without_model_nm: Vec::new(),
     };
-    Ok(Loaded { bands: vec![(None, model.terms)], value, reference: None })
+    Ok(Loaded { bands: vec![(None, model.terms)], covariance, value, reference: None })
+}
+
+/// The covariance of a model in JSON; of nothing where it has none.
+fn json_covariance(model: &ModelJson) -> Result<ParameterCovariance, String> {
+    let kinds: Vec<TermKind> = model.terms.iter().map(Term::kind).collect();
+    let mut all = ParameterCovariance::unknown(&kinds);
+    let (names, rows) = match (&model.covariance_parameters, &model.covariance) {
+        (None, None) => return Ok(all),
+        (Some(names), Some(rows)) => (names, rows),
+        _ => return Err("`covariance` and `covariance_parameters` belong together; give both or neither".to_owned()),
+    };
+    let count = names.len();
+    if let Some(twice) = names.iter().enumerate().find(|(k, name)| names[..*k].contains(name)) {
+        return Err(format!("`covariance_parameters` names `{}` twice; name each parameter once", twice.1));
+    }
+    let lengths: Vec<usize> = rows.iter().map(Vec::len).collect();
+    if lengths != vec![count; count] {
+        return Err(format!(
+            "`covariance` has rows of {lengths:?} numbers; expected {count} rows of {count}, as `covariance_parameters` has names"
+        ));
+    }
+    let at = |i: usize, j: usize| rows[i][j].unwrap_or(f64::NAN);
+    for i in 0..count {
+        if at(i, i) < 0.0 {
+            return Err(format!("`covariance`: the variance of `{}` is {}; expected 0 or more", names[i], at(i, i)));
+        }
+        if let Some(j) = (0..i).find(|&j| (at(i, j) - at(j, i)).abs() > 1e-9 * (at(i, i) * at(j, j)).sqrt()) {
+            return Err(format!(
+                "`covariance`: {} for `{}` with `{}` and {} the other way round; expected a symmetric matrix",
+                at(i, j),
+                names[i],
+                names[j],
+                at(j, i)
+            ));
+        }
+    }
+    let known = all.names().join("`, `");
+    all.enter(names, at).map_err(|name| format!("`covariance_parameters` names `{name}`; the terms have `{known}`"))?;
+    Ok(all)
 }

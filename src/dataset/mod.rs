@@ -1,6 +1,6 @@
 //! The document that labs exchange: samples, instruments, lights, references, measurements as rows of acquisitions,
 //! models, provenance; and what follows from it alone: the reduction of a spectrum to the fitted number, the
-//! prediction of a model, its residuals.
+//! prediction of a model with its uncertainty, its residuals.
 //!
 //! *May use:* `terms`, `quantity`. No HDF5, no files.
 //!
@@ -22,6 +22,7 @@ mod mask;
 mod measurement;
 mod model;
 mod place;
+mod prediction_uncertainty;
 mod provenance;
 mod reduce;
 mod residual;
@@ -46,6 +47,7 @@ pub use mask::{Mask, UnknownMask};
 pub use measurement::{Acquisition, Derivation, Excitation, Measurement, Role, ShapeError};
 pub use model::{FittedParameter, FittedTerm, Model, Residuals, Separability};
 pub use place::Place;
+pub use prediction_uncertainty::{ParameterCovariance, PredictionError, PredictionUncertainty};
 pub use provenance::{Assumption, InputFile, Notice, Provenance, Receipt, Step};
 pub use reduce::{ReduceError, Reduced, Reduction, UnknownReduction, reduce};
 pub use residual::{Prediction, TermsError, predict, residuals};

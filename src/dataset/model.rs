@@ -161,9 +161,14 @@ impl Model {
     /// model has several terms of that kind `TERM:POSITION.PARAMETER`, so that every name means one parameter.
     #[must_use]
     pub fn covariance_name(&self, position: usize, parameter: &str) -> String {
-        let kind = self.terms.get(position).map(|term| term.kind);
-        let of_kind = self.terms.iter().filter(|term| Some(term.kind) == kind).count();
-        match (kind, of_kind) {
+        let kinds: Vec<TermKind> = self.terms.iter().map(|term| term.kind).collect();
+        Self::name_in_covariance(&kinds, position, parameter)
+    }
+
+    /// The same for a list of terms that is no model yet.
+    pub(super) fn name_in_covariance(terms: &[TermKind], position: usize, parameter: &str) -> String {
+        let kind = terms.get(position);
+        match (kind, terms.iter().filter(|other| Some(*other) == kind).count()) {
             (Some(kind), 1) => format!("{kind}.{parameter}"),
             (Some(kind), _) => format!("{kind}:{position}.{parameter}"),
             (None, _) => String::new(),

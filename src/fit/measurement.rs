@@ -153,7 +153,7 @@ impl Choice {
         Ok(Self { diffuse, specular: has(TermKind::TorranceSparrow) })
     }
 
-    fn terms(self) -> Terms {
+    pub(super) fn terms(self) -> Terms {
         Terms { diffuse: self.diffuse.is_some(), specular: self.specular }
     }
 }
@@ -275,7 +275,7 @@ fn not_a_ratio(data: &Reduced, choice: Choice) -> Option<String> {
 }
 
 /// Fits the terms; where no specular one is seen, the diffuse one alone over every geometry at which it has a value.
-fn fit_reduced(
+pub(super) fn fit_reduced(
     name: &str,
     data: &Reduced,
     reference: &Reference,

@@ -4,6 +4,8 @@
 //! says too little and too much at once; the profile is exact in whatever scale the parameter is written (Venzon and
 //! Moolgavkar 1988, Applied Statistics 37, 87).
 
+mod curve;
+
 use ndarray::ArrayView2;
 use statrs::distribution::{ContinuousCDF, Normal, StudentsT};
 
@@ -13,8 +15,10 @@ use super::outcome::Fit;
 use super::polish::{Fixed, Polished, Reduced};
 use super::solve::{DataError, Fitter, Prepared};
 
+pub use curve::{ProfileCurve, Profiled};
+
 /// Profile points for one end of an interval; four are usual.
-const MOST_POINTS: usize = 40;
+const MOST_POINTS: usize = 60;
 /// An end is found when the root of the rise of chi-square is met to this share.
 const MET: f64 = 1e-4;
 /// A profile that finds a chi-square lower by this much has found a better fit.
@@ -114,12 +118,7 @@ impl Fitter<'_> {
             intervals.diffuse = one.then(|| linear(fit, data.unit.is_some(), probability));
             return Ok(intervals);
         }
-        let (unit, residual) = (data.unit.unwrap_or(1.0), fit.chi_square / data.freedom);
-        let quantile = quantile(probability, data.unit.is_none().then_some(data.freedom));
-        let rise = quantile * quantile * if data.unit.is_some() { 1.0 } else { residual } / unit;
-        let best = Point { log: [fit.roughness.ln(), fit.index_minus_one.ln()] };
-        let mut profile = Profile { reduced: self.reduced(data), best, lowest: 0.0, rise, quantile, fit };
-        profile.lowest = profile.reduced.evaluate(&best, Held::Nothing).chi_square;
+        let mut profile = self.profile(data, fit, probability);
         intervals.roughness = Some(profile.interval(Walk::Shape(0))?);
         intervals.index_minus_one = Some(profile.interval(Walk::Shape(1))?);
         if one {
@@ -129,6 +128,19 @@ impl Fitter<'_> {
             }
         }
         Ok(intervals)
+    }
+}
+
+impl Fitter<'_> {
+    /// The profiles of a fit with a specular term.
+    fn profile<'b>(&'b self, data: &'b Prepared, fit: &'b Fit, probability: f64) -> Profile<'b> {
+        let (unit, residual) = (data.unit.unwrap_or(1.0), fit.chi_square / data.freedom);
+        let quantile = quantile(probability, data.unit.is_none().then_some(data.freedom));
+        let rise = quantile * quantile * if data.unit.is_some() { 1.0 } else { residual } / unit;
+        let best = Point { log: [fit.roughness.ln(), fit.index_minus_one.ln()] };
+        let mut profile = Profile { reduced: self.reduced(data), best, lowest: 0.0, rise, quantile, fit };
+        profile.lowest = profile.reduced.evaluate(&best, Held::Nothing).chi_square;
+        profile
     }
 }
 
@@ -201,16 +213,18 @@ impl Profile<'_> {
     fn end(&mut self, walk: Walk, sign: f64) -> Result<(f64, bool), Point> {
         let (start, step, limit) = self.route(walk, sign);
         let mut follow = self.best;
-        // The root of the rise of chi-square is nearly linear in the parameter: secants meet it fast.
+        // The root of the rise of chi-square is nearly linear in the parameter: secants meet it fast. Where it is flat and then
+        // a wall, as where another parameter comes to its bound, they creep, and halving is faster.
         let (mut inner, mut inner_root) = (start, 0.0);
         let mut outer: Option<(f64, f64)> = None;
+        let mut stopped = false;
         let mut at = start + sign * step * self.quantile;
-        for _ in 0..MOST_POINTS {
+        for point in 0..MOST_POINTS {
             let clipped = if sign > 0.0 { at.min(limit) } else { at.max(limit) };
             let polished = self.at(walk, clipped, follow)?;
             let root = ((polished.curvature.chi_square - self.lowest).max(0.0) / self.rise).sqrt();
             if (root - 1.0).abs() < MET {
-                return Ok(self.found(walk, clipped, Some(&polished)));
+                return Ok(self.found(walk, clipped, polished.on_edge.contains(&true)));
             }
             if root < 1.0 {
                 follow = polished.point;
@@ -220,24 +234,24 @@ impl Profile<'_> {
                 (inner, inner_root) = (clipped, root);
             } else {
                 outer = Some((clipped, root));
+                stopped = polished.on_edge.contains(&true);
             }
             at = match outer {
                 None => inner + (inner - start) * ((1.1 - inner_root) / inner_root).clamp(0.3, 2.0),
                 Some((outer, outer_root)) => {
                     if (outer - inner).abs() <= 1e-9 * (1.0 + outer.abs()) {
-                        return Ok(self.found(walk, outer, None));
+                        return Ok(self.found(walk, outer, stopped));
                     }
-                    let share = ((1.0 - inner_root) / (outer_root - inner_root)).clamp(0.05, 0.95);
-                    inner + share * (outer - inner)
+                    let secant = ((1.0 - inner_root) / (outer_root - inner_root)).clamp(0.05, 0.95);
+                    inner + if point % 3 == 2 { 0.5 } else { secant } * (outer - inner)
                 }
             };
         }
-        Ok(self.found(walk, at, None))
+        Ok(self.found(walk, at, stopped))
     }
 
     /// The end on the parameter's own scale. An intensity that index or roughness stopped at their bounds is open.
-    fn found(&self, walk: Walk, at: f64, polished: Option<&Polished>) -> (f64, bool) {
-        let stopped = polished.is_some_and(|polished| polished.on_edge.contains(&true));
+    fn found(&self, walk: Walk, at: f64, stopped: bool) -> (f64, bool) {
         (self.natural(walk, at), stopped && matches!(walk, Walk::Intensity))
     }
 

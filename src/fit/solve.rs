@@ -38,6 +38,24 @@ pub enum DataError {
         /// Number of geometries.
         expected: usize,
     },
+    /// Uncertainties of another number of emission values.
+    #[error("uncertainties of {found} emission values for {expected}")]
+    Rows {
+        /// Number found.
+        found: usize,
+        /// Number of emission values.
+        expected: usize,
+    },
+    /// A bound that cannot be used.
+    #[error("the bound of emission value {emission} at geometry {geometry} (both from 0): {problem}")]
+    Bound {
+        /// Index of the emission value.
+        emission: usize,
+        /// Index of the geometry.
+        geometry: usize,
+        /// Why.
+        problem: &'static str,
+    },
     /// Fewer usable values than parameters.
     #[error("{usable} usable values for {parameters} parameters ({left_out}); a fit needs more values than parameters")]
     TooFew {
@@ -68,8 +86,8 @@ pub enum DataError {
 #[derive(Debug, Clone, Copy)]
 pub struct Fitter<'a> {
     pub(super) set: &'a GeometrySet,
-    terms: Terms,
-    share: Share,
+    pub(super) terms: Terms,
+    pub(super) share: Share,
     /// Bounds of ln r and ln(n - 1).
     pub(super) bounds: [(f64, f64); 2],
 }
@@ -158,12 +176,7 @@ impl<'a> Fitter<'a> {
         if !self.terms.diffuse && !self.terms.specular {
             return Err(DataError::NoTerm);
         }
-        let expected = self.set.len();
-        for found in [values.ncols(), sigma.map_or(expected, |sigma| sigma.ncols())] {
-            if found != expected {
-                return Err(DataError::Length { found, expected });
-            }
-        }
+        self.check_shape(values, sigma)?;
         let smallest = magnitude::check(values, sigma)?;
         let samples = Samples::new(self.set, self.terms.diffuse, values, sigma, smallest.recip());
         let mut left_out = samples.left_out;
@@ -174,6 +187,20 @@ impl<'a> Fitter<'a> {
         }
         let unit = sigma.is_some().then(|| smallest.powi(-2));
         Ok(Prepared { samples, unit, freedom: (usable - parameters) as f64, left_out })
+    }
+
+    /// One number per geometry, and one uncertainty per number.
+    pub(super) fn check_shape(&self, values: ArrayView2<f64>, sigma: Option<ArrayView2<f64>>) -> Result<(), DataError> {
+        let expected = self.set.len();
+        for found in [values.ncols(), sigma.map_or(expected, |sigma| sigma.ncols())] {
+            if found != expected {
+                return Err(DataError::Length { found, expected });
+            }
+        }
+        match sigma.map(|sigma| sigma.nrows()) {
+            Some(found) if found != values.nrows() => Err(DataError::Rows { found, expected: values.nrows() }),
+            _ => Ok(()),
+        }
     }
 
     pub(super) fn has_diffuse(&self) -> bool {

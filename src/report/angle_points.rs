@@ -134,7 +134,7 @@ impl ScaledResiduals {
 }
 
 /// The emission index at which the mean of the finite values is largest.
-fn strongest(values: &Array2<f64>) -> usize {
+pub(super) fn strongest(values: &Array2<f64>) -> usize {
     let mean = |row: ArrayView1<'_, f64>| {
         let finite: Vec<f64> = row.iter().copied().filter(|value| value.is_finite()).collect();
         finite.iter().sum::<f64>() / finite.len() as f64

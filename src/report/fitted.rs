@@ -137,7 +137,12 @@ fn rms_in_words(model: &Model, points: &AnglePoints) -> String {
 }
 
 /// Parameters that have one value per wavelength.
-fn take_parameter_spectra(drawn: &mut Drawn, model: &Model, measurement: Option<&Measurement>, subject: &str) {
+pub(super) fn take_parameter_spectra(
+    drawn: &mut Drawn,
+    model: &Model,
+    measurement: Option<&Measurement>,
+    subject: &str,
+) {
     let Some(nm) = model.emission.wavelengths() else { return };
     let measured = measurement.and_then(|one| one.emission.wavelengths()).unwrap_or(&[]);
     let without: Vec<f64> = measured.iter().copied().filter(|one| !nm.contains(one)).collect();

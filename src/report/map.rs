@@ -76,6 +76,19 @@ pub fn residual_map(map: &AngleMap, title: &str) -> Result<Figure, ReportError> 
     Ok(draw(map, None, colours, &text))
 }
 
+/// The leverage of each geometry on a fit.
+///
+/// # Errors
+/// [`ReportError`] when there is nothing finite to draw.
+pub(super) fn leverage_map(map: &AngleMap, title: &str) -> Result<Figure, ReportError> {
+    map.check()?;
+    let caption = format!(
+        "{title}: what the prediction at a geometry moves by when its value moves by one. Where it is near 1, the fit meets the          value whatever it is, and its residual says nothing."
+    );
+    let subtitle = "the leverages of all values add up to the number of parameters";
+    Ok(draw(map, None, value_colours(map)?, &MapText { name: "leverage-map", title, subtitle, caption }))
+}
+
 fn value_colours(map: &AngleMap) -> Result<Colours, ReportError> {
     let values: Vec<f64> = map.finite().collect();
     let scale = Scale::for_colours(&values).ok_or_else(|| ReportError::Empty { figure: map.label.clone() })?;

@@ -57,11 +57,7 @@ fn measured(document: &Document, measurement: &Measurement) -> Drawn {
 pub fn page(document: &Document, pictures: &Pictures) -> String {
     let title = document.title.as_deref().unwrap_or("A bbrf document");
     let mut html = Html::default();
-    html.markup("<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n");
-    html.markup("<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n");
-    html.text("title", title);
-    html.markup(&format!("<style>\n{STYLE}</style>\n</head>\n<body>\n<header>\n"));
-    html.text("h1", title);
+    head(&mut html, title);
     html.facts(&[("licence", document.license.clone()), ("cite as", document.citation.clone())]);
     html.markup("</header>\n<main>\n");
     write_simulated(&mut html, &document.samples);
@@ -70,6 +66,15 @@ pub fn page(document: &Document, pictures: &Pictures) -> String {
     write_provenance(&mut html, &document.provenance);
     html.markup("</main>\n</body>\n</html>\n");
     html.finish()
+}
+
+/// The start of a page, up to its heading.
+pub(super) fn head(html: &mut Html, title: &str) {
+    html.markup("<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n");
+    html.markup("<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n");
+    html.text("title", title);
+    html.markup(&format!("<style>\n{STYLE}</style>\n</head>\n<body>\n<header>\n"));
+    html.text("h1", title);
 }
 
 fn write_simulated(html: &mut Html, samples: &[Sample]) {
@@ -244,7 +249,7 @@ fn flag_counts(measurement: &Measurement) -> String {
     }
 }
 
-fn write_drawn(html: &mut Html, drawn: Option<&Drawn>) {
+pub(super) fn write_drawn(html: &mut Html, drawn: Option<&Drawn>) {
     let Some(drawn) = drawn else { return };
     if !drawn.figures.is_empty() {
         html.markup("<div class=\"figures\">\n");

@@ -6,28 +6,28 @@ use bbrf::terms::{Denominator, Distribution};
 
 use crate::scans::{Random, Truth, measure, paper_grid, peer_fit, prepare};
 
-const BOTH: Terms = Terms { diffuse: true, specular: true };
+pub const BOTH: Terms = Terms { diffuse: true, specular: true };
 
-fn set(grid: &[Geometry]) -> GeometrySet {
+pub fn set(grid: &[Geometry]) -> GeometrySet {
     GeometrySet::new(grid, &Reference::None, Distribution::GaussianHalfHeight, Denominator::CosThetaI).unwrap()
 }
 
-fn fit(grid: &[Geometry], values: &[f64], sigma: &[f64]) -> Fit {
+pub fn fit(grid: &[Geometry], values: &[f64], sigma: &[f64]) -> Fit {
     Fitter::new(&set(grid), BOTH).fit(values, Some(sigma)).unwrap()
 }
 
-fn found(fit: &Fit) -> [f64; 4] {
+pub fn found(fit: &Fit) -> [f64; 4] {
     [fit.bands[0].diffuse, fit.bands[0].intensity, fit.roughness, fit.index_minus_one]
 }
 
 /// Every parameter within four of its standard uncertainties of the truth.
-fn assert_recovered(fit: &Fit, truth: &Truth) {
+pub fn assert_recovered(fit: &Fit, truth: &Truth) {
     for ((found, truth), sigma) in found(fit).into_iter().zip(truth.as_array()).zip(fit.standard_uncertainty(0)) {
         assert!(((found - truth) / sigma).abs() < 4.0, "{found}, not {truth} within {sigma}: {fit:?}");
     }
 }
 
-fn paper_sphere() -> Truth {
+pub fn paper_sphere() -> Truth {
     Truth { albedo: 0.8, intensity: 30.0, roughness: 0.05, index_minus_one: 0.45 }
 }
 

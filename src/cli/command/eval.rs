@@ -1,5 +1,7 @@
 //! `bbrf eval`: forward values of a model over a list of geometries.
 
+mod uncertainty;
+
 use std::path::PathBuf;
 
 use miette::miette;
@@ -35,6 +37,14 @@ pub(crate) struct Arguments {
     /// Add phi_rad, D, G, F of the specular term
     #[arg(long)]
     factors: bool,
+    /// Add the standard uncertainty (k = 1) of `value` from the covariance of the model's parameters
+    ///
+    /// `standard_uncertainty` is what the independent errors of the data leave; `shared_relative_uncertainty`, where the model
+    /// has it, is relative, the same for all values of the model (white reference, certificate) and not contained in the
+    /// other. An entry is empty where the model has no covariance for a parameter that the value depends on; which, is said on
+    /// standard error. A model of many wavelengths holds no covariance of an amplitude with roughness and index.
+    #[arg(long)]
+    uncertainty: bool,
     /// Print JSON instead of CSV
     #[arg(long)]
     json: bool,
@@ -62,6 +72,15 @@ struct EvalRow {
     value: Option<f64>,
     /// Sum of the luminescent terms likewise, where the model has any.
     luminescent: Option<f64>,
+    /// With `--uncertainty`: standard uncertainty of `value` from the independent errors; `null` where it cannot be formed.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    standard_uncertainty: Option<Option<f64>>,
+    /// With `--uncertainty`: that of `luminescent`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    luminescent_standard_uncertainty: Option<Option<f64>>,
+    /// With `--uncertainty`: relative standard uncertainty that all values of the model share, where it has one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    shared_relative_uncertainty: Option<f64>,
     #[serde(rename = "phi_rad")]
     phi: Option<f64>,
     #[serde(rename = "D")]
@@ -75,7 +94,7 @@ struct EvalRow {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> CommandResult {
-    let Loaded { bands, value, .. } = load(&arguments.model)?;
+    let Loaded { bands, value, covariance, .. } = load(&arguments.model)?;
     let specular = match (arguments.factors, bands.first()) {
         (true, Some((_, terms))) => Some(only_specular(terms)?),
         _ => None,
@@ -90,9 +109,13 @@ pub(crate) fn run(arguments: &Arguments) -> CommandResult {
             arguments.model
         ));
     }
+    let mut unknown = uncertainty::Unknown::default();
     for geometry in &geometries {
-        for (emission_nm, terms) in &bands {
-            let row = evaluate(geometry, *emission_nm, terms, specular);
+        for ((emission_nm, terms), covariance) in bands.iter().zip(&covariance) {
+            let mut row = evaluate(geometry, *emission_nm, terms, specular);
+            if arguments.uncertainty {
+                uncertainty::add(&mut row.0, geometry, terms, covariance, &mut unknown);
+            }
             if let Err(problem) = &row.1 {
                 let file = arguments.geometry.display();
                 print_message(&format!("bbrf: {file}, line {}: {problem}", geometry.line));
@@ -101,10 +124,11 @@ pub(crate) fn run(arguments: &Arguments) -> CommandResult {
             rows.push(row.0);
         }
     }
+    unknown.print(&arguments.model);
     if arguments.json {
         print_json("bbrf:eval:1", &EvalResult { value, rows })?;
     } else {
-        print_text(&csv(&rows, arguments.factors))?;
+        print_text(&csv(&rows, arguments.factors, arguments.uncertainty))?;
     }
     Ok(if undefined == 0 { Outcome::Done } else { Outcome::Failed })
 }
@@ -142,6 +166,9 @@ fn evaluate(
         emission_nm,
         value: value.map(|p| p.elastic),
         luminescent: value.filter(|_| has_luminescent).map(|p| p.luminescent),
+        standard_uncertainty: None,
+        luminescent_standard_uncertainty: None,
+        shared_relative_uncertainty: None,
         phi: factors.map(|f| f.phi_rad),
         d: factors.map(|f| f.d),
         g: factors.map(|f| f.g),
@@ -152,15 +179,21 @@ fn evaluate(
 }
 
 /// CSV: the angle columns as they came, then the values, numbers in their shortest form that reads back.
-fn csv(rows: &[EvalRow], factors: bool) -> String {
+fn csv(rows: &[EvalRow], factors: bool, uncertainty: bool) -> String {
     let signed = rows.first().is_some_and(|row| row.signed.is_some());
     let spectral = rows.iter().any(|row| row.emission_nm.is_some());
     let luminescent = rows.iter().any(|row| row.luminescent.is_some());
+    let shared = rows.iter().any(|row| row.shared_relative_uncertainty.is_some());
     let mut header =
         if signed { "theta_i_deg,theta_v_deg" } else { "theta_i_deg,phi_i_deg,theta_v_deg,phi_v_deg" }.to_owned();
     header.push_str(if spectral { ",emission_nm" } else { "" });
     header.push_str(",value");
     header.push_str(if luminescent { ",luminescent" } else { "" });
+    if uncertainty {
+        header.push_str(",standard_uncertainty");
+        header.push_str(if luminescent { ",luminescent_standard_uncertainty" } else { "" });
+        header.push_str(if shared { ",shared_relative_uncertainty" } else { "" });
+    }
     header.push_str(if factors { ",phi_rad,D,G,F" } else { "" });
     let mut lines = vec![header];
     for row in rows {
@@ -175,6 +208,11 @@ fn csv(rows: &[EvalRow], factors: bool) -> String {
         fields.extend(spectral.then(|| optional(row.emission_nm)));
         fields.push(optional(row.value));
         fields.extend(luminescent.then(|| optional(row.luminescent)));
+        if uncertainty {
+            fields.push(optional(row.standard_uncertainty.flatten()));
+            fields.extend(luminescent.then(|| optional(row.luminescent_standard_uncertainty.flatten())));
+            fields.extend(shared.then(|| optional(row.shared_relative_uncertainty)));
+        }
         if factors {
             fields.extend([row.phi, row.d, row.g, row.f].map(optional));
         }

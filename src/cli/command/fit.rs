@@ -1,6 +1,7 @@
 //! `bbrf fit`: fits the terms to a measurement of each file.
 
 mod compare;
+mod diagnose;
 mod outputs;
 mod settings;
 
@@ -70,8 +71,11 @@ pub(crate) struct Arguments {
     #[arg(long)]
     reference: Option<Reference>,
     /// Fit every form of the terms instead, and compare them by cross-validation, AICc and BIC; writes nothing
-    #[arg(long, conflicts_with_all = ["output", "terms", "distribution", "denominator"])]
+    #[arg(long, conflicts_with_all = ["output", "terms", "distribution", "denominator", "diagnose"])]
     compare: bool,
+    /// Write an HTML page on what the fit rests on: residuals, leverage, influential values, profiles; for one FILE
+    #[arg(long, conflicts_with_all = ["share", "loss", "nuisance"], value_name = "PAGE")]
+    diagnose: Option<PathBuf>,
     /// Print the result as JSON
     #[arg(long)]
     json: bool,
@@ -182,6 +186,9 @@ pub(crate) fn run(arguments: &Arguments) -> CommandResult {
     if arguments.compare {
         return compare::run(arguments);
     }
+    if let Some(page) = &arguments.diagnose {
+        diagnose::check(page, &arguments.files, arguments.output.as_deref())?;
+    }
     let outputs = outputs::outputs(&arguments.files, arguments.output.as_deref())?;
     let progress = progress::bar(arguments.files.len() as u64, "fitting");
     let results: Vec<Result<FittedModel, miette::Report>> = arguments
@@ -243,6 +250,9 @@ fn fit_file(arguments: &Arguments, file: &Path, output: Option<&Path>) -> Result
         .map_err(|error| miette!("{}: {error}{}", file.display(), hint(&error)))?;
     let seconds = start.elapsed().as_secs_f64();
     let result = fitted_model(file, &model, seconds);
+    if let Some(page) = &arguments.diagnose {
+        diagnose::write(page, &document, &model, &options)?;
+    }
     if let Some(output) = output {
         store(&mut document, model);
         if let Some(path) = foreign.lost().first() {
