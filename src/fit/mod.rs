@@ -8,9 +8,12 @@
 //! How it works. The model is linear in its amplitudes and non-linear in roughness r and index n alone. So the
 //! amplitudes are solved for, non-negatively, inside every evaluation (variable projection), and a two-parameter
 //! problem is left, in ln r and ln(n-1). A coarse grid over it ([`GeometrySet`] keeps its tables) gives the starts;
-//! Levenberg-Marquardt ([`descent`]) polishes the two best that differ in roughness. Everything that depends on the geometries alone is
-//! in the set, sorted by half-vector angle, so that an evaluation needs one D per distinct angle and one F per distinct
-//! half angle.
+//! Levenberg-Marquardt ([`descent`]) polishes the two best that differ in roughness. Everything that depends on the
+//! geometries alone is in the set, sorted by half-vector angle, so that an evaluation needs one D per distinct angle and
+//! one F per distinct half angle.
+//!
+//! On top of that: bounds and outliers are passes of the same fit over working values; errors that hang together and
+//! effects of the instrument go on from it with all parameters at once.
 
 mod columns;
 mod comparison;
