@@ -94,7 +94,7 @@ impl Profile<'_> {
         let reach = (end - start) * if is_open { 1.0 } else { BEYOND };
         let unit = self.rise / (self.quantile * self.quantile);
         let (mut follow, mut points) = (self.best, Vec::with_capacity(POINTS));
-        if !(reach * sign > 0.0) {
+        if reach.is_nan() || reach * sign <= 0.0 {
             return points;
         }
         for k in 1..=POINTS {
