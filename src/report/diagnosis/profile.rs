@@ -13,7 +13,9 @@ use crate::report::scale::{Scale, extent};
 use crate::report::{Figure, ReportError};
 
 /// Points of the parabola.
-const STEPS: usize = 80;
+const STEPS: usize = 160;
+/// A parameter that may be so many times its least value is drawn over a logarithmic axis.
+const WIDE: f64 = 30.0;
 
 /// Name, unit and offset of what is drawn: of an index its profile is walked in n - 1.
 fn named(shown: &Shown<'_>, parameter: Profiled) -> (String, String, f64) {
@@ -51,15 +53,23 @@ pub(super) fn figure(shown: &Shown<'_>, curve: &ProfileCurve) -> Result<Figure, 
     let top = 1.8 * curve.level;
     let points: Vec<(f64, f64)> = curve.points.iter().map(|(value, rise)| (value + offset, *rise)).collect();
     let empty = || ReportError::Empty { figure: text.name.clone() };
-    let (from, to) = extent(points.iter().map(|point| point.0)).ok_or_else(empty)?;
-    let x = Scale::linear_over([from, to]).ok_or_else(empty)?.widened(0.04);
+    // A point above the frame would stretch it where nothing is drawn.
+    let drawn = points.iter().filter(|point| point.1 <= top).map(|point| point.0);
+    let ends = [curve.interval.low, curve.interval.high].map(|end| end + offset);
+    let (from, to) = extent(drawn.chain(ends)).ok_or_else(empty)?;
+    let x = if from > 0.0 && to > WIDE * from {
+        Scale::Logarithmic { from, to }
+    } else {
+        Scale::linear_over([from, to]).ok_or_else(empty)?
+    };
+    let x = x.widened(0.04);
     let frame = Frame::new(text.area(), x, Scale::Linear { from: 0.0, to: top });
     let mut canvas = Canvas::new(SHEET_WIDTH, frame.area.bottom() + BELOW + 22.0);
     frame.draw_grid(&mut canvas);
     draw_levels(&mut canvas, &frame, curve, offset);
     let sigma = curve.standard_uncertainty;
     if sigma.is_finite() && sigma > 0.0 {
-        let at = |k: usize| from + (to - from) * k as f64 / STEPS as f64;
+        let at = |k: usize| frame.x.value(k as f64 / STEPS as f64);
         let parabola = (0..=STEPS).map(|k| (at(k), ((at(k) - offset - curve.best) / sigma).powi(2)));
         draw_below(&mut canvas, &frame, parabola.collect(), top, (FITTED, 6.0));
     }
@@ -77,7 +87,8 @@ fn draw_levels(canvas: &mut Canvas, frame: &Frame, curve: &ProfileCurve, offset:
     canvas.line((area.left, level), (area.right(), level), INK, 1.4);
     let label = format!("95 %: {}", number((curve.level * 1000.0).round() / 1000.0));
     let (best, _) = frame.point(curve.best + offset, 0.0);
-    canvas.text((best + 6.0, level - 6.0), &label, Style::new(TICK_SIZE, TextAnchor::Start));
+    let (anchor, away) = if best > area.centre().0 { (TextAnchor::End, -6.0) } else { (TextAnchor::Start, 6.0) };
+    canvas.text((best + away, level - 6.0), &label, Style::new(TICK_SIZE, anchor));
     canvas.line((best, area.top), (best, area.bottom()), MUTED, 1.0);
     let ends = [(curve.interval.low, curve.interval.low_open), (curve.interval.high, curve.interval.high_open)];
     for (value, is_open) in ends {
