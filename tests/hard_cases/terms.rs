@@ -131,6 +131,11 @@ fn a_huge_roughness_makes_the_distribution_flat() {
                 let cosines = (0.5_f64.to_radians().cos() / 30_f64.to_radians().cos()).powi(4);
                 assert!((second.value / first.value / cosines - 1.0).abs() < 1e-14, "{distribution}");
             }
+            // N tends to the integral of cos(phi) over the hemisphere, which is pi.
+            Distribution::GaussianNormalised => {
+                let over_pi = std::f64::consts::PI * second.value;
+                assert!((over_pi - 1.0).abs() < 1e-14 && second.by_log_roughness.abs() < 1e-15, "{distribution}");
+            }
             _ => assert!((second.value - 1.0).abs() < 1e-15 && second.by_log_roughness < 1e-15, "{distribution}"),
         }
     }
