@@ -3,7 +3,7 @@
 //! *May use:* `dataset`, `terms`, `quantity`.
 //!
 //! *Invariant:* a fit that reports success is at the global minimum over its box as far as a deterministic grid and
-//! two polished starts can tell; what the data do not determine has no number but a sentence.
+//! a few polished starts can tell; what the data do not determine has no number but a sentence.
 //!
 //! How it works. The model is linear in its amplitudes and non-linear in roughness r and index n alone. So the
 //! amplitudes are solved for, non-negatively, inside every evaluation (variable projection), and a two-parameter
@@ -17,6 +17,7 @@ mod comparison;
 mod curvature;
 pub mod descent;
 pub mod design;
+mod effort;
 mod geometry_set;
 mod identifiability;
 mod left_out;
@@ -29,6 +30,7 @@ mod outcome;
 mod polish;
 mod products;
 mod profile;
+mod row;
 mod samples;
 mod separability;
 mod solve;
@@ -37,6 +39,7 @@ mod statistics;
 
 pub use comparison::{Compared, Comparison, Criterion, Difference, Indistinguishable, Shape, compare_measurement};
 pub use curvature::Share;
+pub use effort::Effort;
 pub use geometry_set::{GeometrySet, SetError};
 pub use left_out::LeftOut;
 pub use loss::{Loss, Side};
