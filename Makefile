@@ -32,7 +32,7 @@ $(TOOLS)/bin/cmake:
 
 $(VENV)/ready: tests/python/requirements.txt
 	$(PYTHON) -m venv $(VENV)
-	$(VENV)/bin/pip install --quiet --disable-pip-version-check -r tests/python/requirements.txt
+	$(VENV)/bin/python -m pip install --quiet --disable-pip-version-check -r tests/python/requirements.txt
 	touch $@
 
 build: $(CMAKE_READY) ## Build the command, optimised.
@@ -62,14 +62,14 @@ lint: $(CMAKE_READY) ## rustfmt, clippy and docs with warnings denied; the readi
 	RUSTFLAGS='-D warnings' $(CARGO) check --locked --no-default-features --package bbrf-capi --target-dir target/no-write
 
 $(VENV)/bench-ready: $(VENV)/ready benches/requirements.txt
-	$(VENV)/bin/pip install --quiet --disable-pip-version-check -r benches/requirements.txt
+	$(VENV)/bin/python -m pip install --quiet --disable-pip-version-check -r benches/requirements.txt
 	touch $@
 
 bench: $(CMAKE_READY) $(VENV)/bench-ready ## Every figure in the README, measured here and now.
 	BBRF_PYTHON=$(VENV)/bin/python $(CARGO) bench --locked --bench fit --bench archive --bench validate
 
 $(VENV)/soak-ready: $(VENV)/ready tests/python/soak.txt
-	$(VENV)/bin/pip install --quiet --disable-pip-version-check -r tests/python/soak.txt
+	$(VENV)/bin/python -m pip install --quiet --disable-pip-version-check -r tests/python/soak.txt
 	touch $@
 
 soak: soak-damage fuzz-check $(VENV)/soak-ready ## Long runs: ten thousand cases of every property, two thousand scans, a million points against 60 digits, and the two below.

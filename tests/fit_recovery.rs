@@ -6,7 +6,7 @@ mod common {
     pub mod scans;
 }
 
-use bbrf::fit::{Fitter, GeometrySet, LeftOut, Stop, Terms};
+use bbrf::fit::{Effort, Fitter, GeometrySet, LeftOut, Stop, Terms};
 use bbrf::quantity::Reference;
 use bbrf::terms::{Denominator, Distribution};
 use common::scans::{Random, Truth, measure, paper_grid, peer_fit, prepare};
@@ -107,6 +107,50 @@ fn several_bands_share_roughness_and_index() {
         ratio > 0.35 && ratio < 0.55,
         "five bands know the roughness {ratio} as well as one; expected about 1/sqrt 5"
     );
+}
+
+/// More nodes, more of them polished and a finer tolerance find what the usual effort finds.
+#[test]
+fn more_effort_changes_nothing_that_the_data_could_tell() {
+    let (grid, set) = (paper_grid(), paper_set());
+    let more = set.clone().with_effort(Effort { roughness_nodes: 40, index_nodes: 7, starts: 5, tolerance: 1e-14 });
+    let mut random = Random::new(3);
+    for trial in 0..trials().div_ceil(10) {
+        let truth = Truth::random(&mut random);
+        let (values, sigma) = measure(&truth, &grid, 0.01, &mut random);
+        let [usual, careful] = [&set, &more].map(|set| Fitter::new(set, BOTH).fit(&values, Some(&sigma)).unwrap());
+        let apart = (usual.roughness.ln() - careful.roughness.ln()).abs() / careful.log_sigma[0];
+        assert!(apart < 1e-3, "trial {trial}: {apart} standard uncertainties: {truth:?}");
+    }
+}
+
+/// A single start in the middle of nothing misses lobes: the effort is really spent.
+#[test]
+fn less_effort_misses_some_scans() {
+    let (grid, set) = (paper_grid(), paper_set());
+    let less = set.clone().with_effort(Effort { roughness_nodes: 1, index_nodes: 1, starts: 1, tolerance: 1e-8 });
+    let mut random = Random::new(4);
+    let missed = (0..200).filter(|_| {
+        let truth = Truth { roughness: random.log_between(0.015, 0.045), ..Truth::random(&mut random) };
+        let (values, sigma) = measure(&truth, &grid, 0.01, &mut random);
+        let [usual, quick] = [&set, &less].map(|set| Fitter::new(set, BOTH).fit(&values, Some(&sigma)).unwrap());
+        quick.chi_square > usual.chi_square + 1.0
+    });
+    assert!(missed.count() > 0);
+}
+
+/// Files made on different machines are compared digit by digit.
+#[test]
+fn vector_instructions_change_no_bit_of_a_fit() {
+    let (grid, set) = (paper_grid(), paper_set());
+    let mut random = Random::new(6);
+    for trial in 0..20 {
+        let truth = Truth::random(&mut random);
+        let (values, sigma) = measure(&truth, &grid, 0.01, &mut random);
+        let fitter = Fitter::new(&set, BOTH);
+        let [first, second] = [fitter, fitter.plain()].map(|fitter| fitter.fit(&values, Some(&sigma)).unwrap());
+        assert_eq!(first, second, "trial {trial}");
+    }
 }
 
 #[test]

@@ -43,10 +43,10 @@ fn a_term_reads_from_the_json_of_the_command_line() {
     assert!(Term::TorranceSparrow(index_one).check().unwrap_err().to_string().contains("refractive_index"));
 }
 
-/// `testdata/reference/gaussian_integral.py` makes the table, by adaptive quadrature with 60 digits.
+/// `testdata/terms_60_digits/gaussian_integral.py` makes the table, with 60 digits, in two ways.
 #[test]
 fn the_norm_of_the_gaussian_keeps_its_digits() {
-    let text = include_str!("../testdata/reference/gaussian_integral.csv");
+    let text = include_str!("../testdata/terms_60_digits/gaussian_integral.csv");
     let mut worst = [0.0_f64; 2];
     for line in text.lines().skip(2) {
         let fields: Vec<f64> = line.split(',').map(|field| field.parse().unwrap()).collect();

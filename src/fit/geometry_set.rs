@@ -2,14 +2,15 @@
 
 use ndarray::Array2;
 
+use super::effort::{Effort, spaced};
 use super::samples::LANES;
 use crate::quantity::{Geometry, HalfAngles, Reference};
 use crate::terms::{Denominator, Distribution, Lobe, Undefined, diffuse_factor, fresnel, specular_factor};
 
-/// Roughness nodes of the starting grid.
-pub(super) const ROUGHNESS_NODES: usize = 12;
-/// Nodes of n - 1 in the starting grid.
-pub(super) const INDEX_NODES: [f64; 3] = [0.15, 0.424_264_068_711_928_5, 1.2];
+/// Ends of the starting grid in n - 1.
+const INDEX_NODES: (f64, f64) = (0.15, 1.2);
+/// Its widest lobe, as a half width at half height in rad.
+const WIDEST_NODE: f64 = 1.0;
 /// A lobe narrower than the smallest half-vector angle over this is seen by no other point of the grid.
 const NARROWEST_NODE: f64 = 4.4;
 /// The box of n - 1.
@@ -55,6 +56,7 @@ pub struct GeometrySet {
     /// Distinct angles between L and Q, and which one each sorted point has.
     pub(super) halves: Vec<HalfAngles>,
     pub(super) half_of: Vec<u32>,
+    pub(super) effort: Effort,
     pub(super) grid: Grid,
     pub(super) roughness_box: (f64, f64),
     /// Smallest half-vector angle that is not 0, rad; infinite where there is none.
@@ -62,9 +64,11 @@ pub struct GeometrySet {
 }
 
 /// Tables of the starting grid.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub(super) struct Grid {
     pub(super) roughness: Vec<f64>,
+    /// Nodes of n - 1.
+    pub(super) index_minus_one: Vec<f64>,
     /// D \[roughness node, segment\].
     pub(super) distribution: Array2<f64>,
     /// F G over denominator and reference \[index node, sorted point\].
@@ -142,8 +146,7 @@ impl GeometrySet {
         let smallest_angle =
             segments.iter().map(|segment| segment.half.phi).find(|&phi| phi > SAME_ANGLE).unwrap_or(f64::INFINITY);
         let width = |half_width: f64| distribution.roughness_from_half_width(half_width);
-        let grid = Grid::new(distribution, smallest_angle, &segments, &halves, &half_of, &masked);
-        Self {
+        let mut set = Self {
             distribution,
             order: points.iter().map(|point| point.input).collect(),
             inputs: points.len() + undefined.len(),
@@ -153,10 +156,21 @@ impl GeometrySet {
             segments,
             halves,
             half_of,
-            grid,
+            effort: Effort::default(),
+            grid: Grid::default(),
             roughness_box: (width(HALF_WIDTH_BOX.0), width(HALF_WIDTH_BOX.1)),
             smallest_angle,
-        }
+        };
+        set.grid = Grid::new(&set);
+        set
+    }
+
+    /// The same with another effort of the fits over it; builds the tables of the starting grid anew.
+    #[must_use]
+    pub fn with_effort(mut self, effort: Effort) -> Self {
+        self.effort = effort.in_range();
+        self.grid = Grid::new(&self);
+        self
     }
 
     /// How many geometries were given.
@@ -196,28 +210,22 @@ impl GeometrySet {
 }
 
 impl Grid {
-    fn new(
-        distribution: Distribution,
-        smallest_angle: f64,
-        segments: &[Segment],
-        halves: &[HalfAngles],
-        half_of: &[u32],
-        masked: &[f64],
-    ) -> Self {
-        let narrowest = (smallest_angle / NARROWEST_NODE).clamp(HALF_WIDTH_BOX.0, 0.5);
-        let ratio = (1.0 / narrowest).ln() / (ROUGHNESS_NODES - 1) as f64;
-        let roughness: Vec<f64> = (0..ROUGHNESS_NODES)
-            .map(|node| distribution.roughness_from_half_width(narrowest * (ratio * node as f64).exp()))
-            .collect();
-        let lobes: Vec<Lobe> = roughness.iter().map(|roughness| distribution.lobe(*roughness)).collect();
-        let table = Array2::from_shape_fn((ROUGHNESS_NODES, segments.len()), |(node, k)| {
-            lobes[node].evaluate(&segments[k].half).value
+    fn new(set: &GeometrySet) -> Self {
+        let narrowest = (set.smallest_angle / NARROWEST_NODE).clamp(HALF_WIDTH_BOX.0, WIDEST_NODE / 2.0);
+        let half_widths = spaced(narrowest, WIDEST_NODE, set.effort.roughness_nodes);
+        let index_minus_one = spaced(INDEX_NODES.0, INDEX_NODES.1, set.effort.index_nodes);
+        let roughness: Vec<f64> =
+            half_widths.into_iter().map(|width| set.distribution.roughness_from_half_width(width)).collect();
+        let lobes: Vec<Lobe> = roughness.iter().map(|roughness| set.distribution.lobe(*roughness)).collect();
+        let distribution = Array2::from_shape_fn((lobes.len(), set.segments.len()), |(node, k)| {
+            lobes[node].evaluate(&set.segments[k].half).value
         });
-        let fresnel_table = INDEX_NODES.map(|m| halves.iter().map(|half| fresnel(half, m).value).collect::<Vec<f64>>());
-        let specular = Array2::from_shape_fn((INDEX_NODES.len(), masked.len()), |(node, point)| {
-            fresnel_table[node][half_of[point] as usize] * masked[point]
+        let fresnel_of = |m: &f64| set.halves.iter().map(|half| fresnel(half, *m).value).collect::<Vec<f64>>();
+        let fresnel_table: Vec<Vec<f64>> = index_minus_one.iter().map(fresnel_of).collect();
+        let specular = Array2::from_shape_fn((fresnel_table.len(), set.masked.len()), |(node, point)| {
+            fresnel_table[node][set.half_of[point] as usize] * set.masked[point]
         });
-        Self { roughness, distribution: table, specular }
+        Self { roughness, index_minus_one, distribution, specular }
     }
 }
 

@@ -14,8 +14,8 @@ const LARGEST: f64 = 1e60;
 /// Checks the values that take part and gives their smallest uncertainty, 1 where none is stated.
 #[inline(always)]
 pub(super) fn check(values: ArrayView2<f64>, sigma: Option<ArrayView2<f64>>) -> Result<f64, DataError> {
-    let of_values = Range::of(values, |value| value.is_finite());
-    let of_sigma = sigma.map(|sigma| Range::of(sigma, |sigma| sigma > 0.0 && sigma.is_finite()));
+    let of_values = Range::of(values, |value| value.abs() <= f64::MAX);
+    let of_sigma = sigma.map(|sigma| Range::of(sigma, |sigma| (sigma > 0.0) & (sigma <= f64::MAX)));
     let smallest = of_sigma.as_ref().map_or(1.0, |sigma| sigma.smallest);
     let ordinary = of_values.is_ordinary()
         && of_sigma.as_ref().is_none_or(Range::is_ordinary)

@@ -3,7 +3,7 @@
 //! *May use:* `dataset`, `terms`, `quantity`.
 //!
 //! *Invariant:* a fit that reports success is at the global minimum over its box as far as a deterministic grid and
-//! two polished starts can tell; what the data do not determine has no number but a sentence.
+//! a few polished starts can tell; what the data do not determine has no number but a sentence.
 //!
 //! How it works. The model is linear in its amplitudes and non-linear in roughness r and index n alone. So the
 //! amplitudes are solved for, non-negatively, inside every evaluation (variable projection), and a two-parameter
@@ -21,6 +21,7 @@ mod curvature;
 pub mod descent;
 pub mod design;
 mod diagnosis;
+mod effort;
 mod fits;
 mod geometry_set;
 mod identifiability;
@@ -38,6 +39,7 @@ mod products;
 mod profile;
 mod repeats;
 mod reweighted;
+mod row;
 mod samples;
 mod separability;
 mod solve;
@@ -48,6 +50,7 @@ pub use crate::dataset::{Bound, Side};
 pub use comparison::{Compared, Comparison, Criterion, Difference, Indistinguishable, Shape, compare_measurement};
 pub use curvature::Share;
 pub use diagnosis::{Diagnosis, MeasurementDiagnosis, diagnose_measurement};
+pub use effort::Effort;
 pub use geometry_set::{GeometrySet, SetError};
 pub use joint::Nuisance;
 pub use left_out::LeftOut;

@@ -6,7 +6,7 @@ use super::left_out::LeftOut;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Stop {
-    /// The predicted decrease of chi-square fell below 1e-8 of chi-square per degree of freedom.
+    /// The predicted decrease of chi-square fell below the tolerance ([`super::Effort`]).
     Converged,
     /// The same, with roughness or index on the edge of its box: the minimum lies outside, if there is one.
     AtBound,

@@ -2,15 +2,12 @@
 
 use super::columns::{Columns, Point};
 use super::curvature::{Curvature, Held, Share, curvature};
-use super::descent::{Bounds, End, Height, Landscape, Rules, descend};
+use super::descent::{Bounds, End, Height, Landscape, Rules, descend, sharpen};
 use super::geometry_set::GeometrySet;
 use super::outcome::Stop;
 use super::products::{Products, products};
 use super::samples::Samples;
 
-/// Stop when the predicted decrease of chi-square is below this share of chi-square per degree of freedom: the
-/// minimum is then 1e-4 standard uncertainties away.
-const TOLERANCE: f64 = 1e-8;
 /// Most evaluations of one polish; five are usual.
 const MOST_EVALUATIONS: usize = 60;
 /// Longest step in ln r and ln(n - 1).
@@ -28,6 +25,8 @@ pub(super) struct Reduced<'a> {
     pub(super) freedom: f64,
     pub(super) columns: Columns,
     pub(super) products: Vec<Products>,
+    /// Where columns and products were evaluated last.
+    pub(super) evaluated: Option<Point>,
     pub(super) evaluations: usize,
 }
 
@@ -53,9 +52,18 @@ impl<'a> Reduced<'a> {
     #[inline(always)]
     pub(super) fn evaluate(&mut self, point: &Point, held: Held) -> Curvature {
         self.evaluations += 1;
-        self.columns.update(self.set, point);
-        products(&self.columns, self.samples, &mut self.products);
+        self.evaluate_products(point);
         curvature(&self.products, self.share, held)
+    }
+
+    /// Columns and products at a point, unless they are there.
+    #[inline(always)]
+    pub(super) fn evaluate_products(&mut self, point: &Point) {
+        if self.evaluated != Some(*point) {
+            self.columns.update(self.set, point);
+            products(&self.columns, self.samples, &mut self.products);
+            self.evaluated = Some(*point);
+        }
     }
 
     /// The minimum that a start leads to; `None` where that is the one `known` already, or where the start has no
@@ -65,9 +73,15 @@ impl<'a> Reduced<'a> {
         let bound = |k: usize| if fixed.shape[k] { (start.log[k], start.log[k]) } else { self.bounds[k] };
         let (roughness, index) = (bound(0), bound(1));
         let bounds = Bounds { low: &[roughness.0, index.0], high: &[roughness.1, index.1], longest: &LONGEST_STEPS };
-        let rules = Rules { tolerance: TOLERANCE, freedom: self.freedom, evaluations: MOST_EVALUATIONS, damping: 1e-4 };
+        let tolerance = self.set.effort.tolerance;
+        let rules = Rules { tolerance, freedom: self.freedom, evaluations: MOST_EVALUATIONS, damping: 1e-4 };
         let mut walk = Walk { held: fixed.amplitude, known, last: Curvature::default(), reduced: self };
-        let descent = descend(&mut walk, &start.log, &bounds, &rules).ok()?;
+        let mut descent = descend(&mut walk, &start.log, &bounds, &rules).ok()?;
+        if descent.end == End::Converged && descent.left > tolerance * descent.height.chi_square / walk.reduced.freedom
+        {
+            // The values are so exact that the rounding of chi-square ended it, not the tolerance.
+            sharpen(&mut walk, &mut descent, &bounds);
+        }
         let on_edge = [0, 1].map(|k| descent.held[k] && !fixed.shape[k]);
         let stop = match descent.end {
             End::Known => return None,

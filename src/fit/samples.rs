@@ -1,11 +1,12 @@
 //! The data of a fit in the order of the geometry set: weighted, and padded so that sums run over whole lanes.
 #![allow(clippy::needless_range_loop, reason = "a lane is an index into several arrays, and is told to be one")]
 
-use ndarray::{ArrayView1, ArrayView2};
+use ndarray::ArrayView2;
 
 use super::geometry_set::GeometrySet;
 use super::left_out::{LeftOut, reason};
 use super::linear::Gram;
+use super::row::{Row, has_one_weighting};
 
 /// One or several emission values, sorted and weighted.
 #[derive(Debug, Clone)]
@@ -68,9 +69,10 @@ impl Samples {
             count: vec![0; bands],
             left_out: LeftOut::default(),
         };
-        let mut row = Row { value: vec![0.0; points], sigma: vec![1.0; points] };
+        let mut row = Row::new(points);
         for band in 0..bands {
-            row.fill(set, values.row(band), sigma.as_ref().map(|sigma| sigma.row(band)));
+            // Under the weights of the first no other uncertainties are looked at.
+            row.fill(set, values.row(band), sigma.as_ref().filter(|_| band < weightings).map(|sigma| sigma.row(band)));
             if band < weightings {
                 samples.weigh(set, diffuse, band, &row, root_unit);
                 // Without uncertainties every sigma is 1, in no unit.
@@ -99,7 +101,8 @@ impl Samples {
             for lane in 0..LANES {
                 let k = chunk * LANES + lane;
                 let (value, sigma) = (row.value[k], row.sigma[k]);
-                let used = value.is_finite() && sigma > 0.0 && sigma < f64::INFINITY;
+                // Without a branch, and without a form that the compiler takes for a test of bits: so it becomes vectors.
+                let used = (value.abs() <= f64::MAX) & (sigma > 0.0) & (sigma <= f64::MAX);
                 let relative = root_unit * sigma;
                 let w = if used { (relative * relative).recip() } else { 0.0 };
                 let value = if used { value } else { 0.0 };
@@ -164,14 +167,29 @@ impl Samples {
     pub(super) fn summed(&self, set: &GeometrySet, diffuse: bool) -> Self {
         let mut sum = vec![0.0; self.points];
         let mut variance: Vec<f64> = vec![0.0; self.points];
+        let mut weighed = 0.0;
         for band in 0..self.bands() {
             let sample = self.sample(band);
             let share = (self.gram[band].syy * sum_of(sample.weight)).sqrt();
+            weighed += share * share;
+            if self.shared {
+                for (sum, weighted) in sum.iter_mut().zip(sample.weighted_value) {
+                    *sum += share * weighted;
+                }
+                continue;
+            }
             let points = sum.iter_mut().zip(&mut variance).zip(sample.weighted_value).zip(sample.weight);
             for (((sum, variance), weighted), weight) in points {
                 // A weight of 0 makes the variance infinite, which marks the point for all.
-                *sum += share * weighted / weight;
-                *variance += share * share / weight;
+                let inverse = weight.recip();
+                *sum += share * weighted * inverse;
+                *variance += share * share * inverse;
+            }
+        }
+        if self.shared {
+            for ((sum, variance), weight) in sum.iter_mut().zip(&mut variance).zip(self.sample(0).weight) {
+                let inverse = weight.recip();
+                (*sum, *variance) = (*sum * inverse, weighed * inverse);
             }
         }
         let largest = variance.iter().copied().filter(|v| v.is_finite()).fold(0.0, f64::max);
@@ -222,45 +240,6 @@ impl Samples {
     pub(super) fn used(&self) -> usize {
         self.count.iter().sum()
     }
-}
-
-/// Values and uncertainties of one emission value in the order of the set, padded with what has no weight.
-struct Row {
-    value: Vec<f64>,
-    sigma: Vec<f64>,
-}
-
-impl Row {
-    #[inline(always)]
-    fn fill(&mut self, set: &GeometrySet, values: ArrayView1<f64>, sigma: Option<ArrayView1<f64>>) {
-        for (into, &input) in self.value.iter_mut().zip(&set.order) {
-            *into = values[input];
-        }
-        if let Some(sigma) = sigma {
-            for (into, &input) in self.sigma.iter_mut().zip(&set.order) {
-                *into = sigma[input];
-            }
-        }
-        // The padding: no value.
-        self.value[set.order.len()..].fill(f64::NAN);
-    }
-}
-
-/// True where all emission values have the same uncertainties and lack the same values.
-fn has_one_weighting(values: ArrayView2<f64>, sigma: Option<ArrayView2<f64>>) -> bool {
-    let one_sigma = sigma.is_none_or(|sigma| {
-        let first = sigma.row(0);
-        // An array that repeats one row by its strides need not be compared.
-        sigma.strides()[0] == 0 || sigma.rows().into_iter().skip(1).all(|row| row == first)
-    });
-    let first = values.row(0);
-    one_sigma
-        && values.rows().into_iter().skip(1).all(|row| {
-            // As a sum, which the compiler turns into vector instructions where a search that ends early would not be.
-            let differing: usize =
-                row.iter().zip(&first).map(|(a, b)| usize::from(a.is_finite() != b.is_finite())).sum();
-            differing == 0
-        })
 }
 
 /// Lanes of every sum: the order of additions, and so the result, is the same on every machine.

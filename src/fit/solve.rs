@@ -3,7 +3,7 @@
 use ndarray::{ArrayView1, ArrayView2, Axis};
 
 use super::columns::{Columns, Point};
-use super::curvature::{Held, Share, amplitudes};
+use super::curvature::{Share, amplitudes};
 use super::geometry_set::{GeometrySet, INDEX_BOX};
 use super::left_out::LeftOut;
 use super::linear::{Amplitudes, Gram};
@@ -90,6 +90,8 @@ pub struct Fitter<'a> {
     pub(super) share: Share,
     /// Bounds of ln r and ln(n - 1).
     pub(super) bounds: [(f64, f64); 2],
+    /// The processor's vector instructions, as far as they are used.
+    arch: pulp::Arch,
 }
 
 /// A whole fit, as what is compiled for several kinds of processor.
@@ -124,7 +126,15 @@ impl<'a> Fitter<'a> {
     #[must_use]
     pub fn new(set: &'a GeometrySet, terms: Terms) -> Self {
         let log = |(low, high): (f64, f64)| (low.ln(), high.ln());
-        Self { set, terms, share: Share::default(), bounds: [log(set.roughness_box), log(INDEX_BOX)] }
+        let bounds = [log(set.roughness_box), log(INDEX_BOX)];
+        Self { set, terms, share: Share::default(), bounds, arch: pulp::Arch::new() }
+    }
+
+    /// The same without vector instructions beyond those that the program was built for. The result is the same to the
+    /// last bit, and later: this is for comparisons.
+    #[must_use]
+    pub fn plain(self) -> Self {
+        Self { arch: pulp::Arch::Scalar, ..self }
     }
 
     /// The same with something else in common between emission values.
@@ -163,7 +173,7 @@ impl<'a> Fitter<'a> {
     /// As [`Fitter::fit`].
     pub fn fit_bands(&self, values: ArrayView2<f64>, sigma: Option<ArrayView2<f64>>) -> Result<Fit, DataError> {
         // The sums below are compiled once more for processors with wider vectors; their order is the same in each.
-        pulp::Arch::new().dispatch(Whole { fitter: *self, values, sigma })
+        self.arch.dispatch(Whole { fitter: *self, values, sigma })
     }
 
     /// Checks, sorts and weights the data.
@@ -227,6 +237,7 @@ impl<'a> Fitter<'a> {
             freedom: data.freedom,
             columns: Columns::default(),
             products: Vec::with_capacity(data.samples.bands()),
+            evaluated: None,
             evaluations: 0,
         }
     }
@@ -253,7 +264,7 @@ impl<'a> Fitter<'a> {
     #[inline(always)]
     pub(super) fn at(&self, data: &Prepared, reduced: &mut Reduced<'_>, polished: &Polished, gain: f64) -> Fit {
         let evaluations = reduced.evaluations;
-        reduced.evaluate(&polished.point, Held::Nothing);
+        reduced.evaluate_products(&polished.point);
         let grams: Vec<Gram> = reduced.products.iter().map(|products| products.gram).collect();
         let mut fit = Fit {
             roughness: polished.point.roughness(),
@@ -299,11 +310,11 @@ impl<'a> Fitter<'a> {
     #[inline(always)]
     fn specular(&self, data: &Prepared, reduced: &mut Reduced<'_>) -> Option<Polished> {
         let starts = match data.samples.bands() {
-            1 => starts(self.set, &data.samples).map(|start| start.map(|start| self.clamped(start))),
+            1 => self.starts(&data.samples),
             _ => self.common_starts(data),
         };
         let mut best: Option<Polished> = None;
-        for start in starts.into_iter().flatten() {
+        for start in starts {
             let Some(polished) = reduced.polish(start, Fixed::default(), best.as_ref()) else { continue };
             let better = best.as_ref().is_none_or(|b| polished.curvature.chi_square < b.curvature.chi_square);
             best = if better { Some(polished) } else { best };
@@ -311,32 +322,35 @@ impl<'a> Fitter<'a> {
         best
     }
 
-    /// Starts of several emission values: the minima of their sum, the second where it is nearly as good.
+    /// The best nodes of the grid, within the box.
     #[inline(always)]
-    fn common_starts(&self, data: &Prepared) -> [Option<Point>; 2] {
+    fn starts(&self, samples: &Samples) -> Vec<Point> {
+        let mut starts = starts(self.set, samples);
+        for start in &mut starts {
+            start.log = [0, 1].map(|k| start.log[k].clamp(self.bounds[k].0, self.bounds[k].1));
+        }
+        starts
+    }
+
+    /// Starts of several emission values: the minima of their sum, those beside the best where they are nearly as good.
+    #[inline(always)]
+    fn common_starts(&self, data: &Prepared) -> Vec<Point> {
         let summed = data.samples.summed(self.set, self.terms.diffuse);
         let freedom = (summed.used() as f64 - self.parameters(1) as f64).max(1.0);
         let alone = Prepared { samples: summed, unit: None, freedom, left_out: LeftOut::default() };
         let mut reduced = self.reduced(&alone);
-        let [first, second] = starts(self.set, &alone.samples).map(|start| start.map(|start| self.clamped(start)));
-        let first = first.and_then(|start| reduced.polish(start, Fixed::default(), None));
-        let second = second.and_then(|start| reduced.polish(start, Fixed::default(), first.as_ref()));
-        let chi_square = |polished: &Option<Polished>| polished.map_or(f64::INFINITY, |p| p.curvature.chi_square);
-        let best = chi_square(&first).min(chi_square(&second));
-        // One unit of chi-square per degree of freedom is one unit of chi-square of data that fit.
-        let near = |polished: Option<Polished>| {
-            polished.filter(|p| p.curvature.chi_square - best <= SEEN * best / freedom).map(|p| p.point)
-        };
-        let [first, second] = [near(first), near(second)];
-        if first.is_some() || second.is_some() {
-            return [first, second];
+        let mut minima: Vec<Polished> = Vec::new();
+        for start in self.starts(&alone.samples) {
+            minima.extend(reduced.polish(start, Fixed::default(), minima.first()));
         }
-        // The sum shows no specular term, or lacks every point, because each is missing somewhere.
-        starts(self.set, &data.samples).map(|start| start.map(|start| self.clamped(start)))
-    }
-
-    fn clamped(&self, start: Point) -> Point {
-        Point { log: [0, 1].map(|k| start.log[k].clamp(self.bounds[k].0, self.bounds[k].1)) }
+        let best = minima.iter().map(|polished| polished.curvature.chi_square).fold(f64::INFINITY, f64::min);
+        // One unit of chi-square per degree of freedom is one unit of chi-square of data that fit.
+        minima.retain(|polished| polished.curvature.chi_square - best <= SEEN * best / freedom);
+        if minima.is_empty() {
+            // The sum shows no specular term, or lacks every point, because each is missing somewhere.
+            return self.starts(&data.samples);
+        }
+        minima.into_iter().map(|polished| polished.point).collect()
     }
 }
 

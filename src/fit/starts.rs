@@ -1,17 +1,17 @@
 //! Where the polish starts: a coarse grid over roughness and index, whose tables belong to the geometry set.
 
 use super::columns::Point;
-use super::geometry_set::{GeometrySet, INDEX_NODES, ROUGHNESS_NODES};
+use super::geometry_set::GeometrySet;
 use super::samples::Samples;
 
-/// The best node of the grid and the best with another roughness, among those with a specular amplitude, for the first
-/// emission value of the samples.
+/// The best nodes of the grid that differ in roughness, among those with a specular amplitude, for the first emission
+/// value of the samples: as many as the set's effort has starts, the best one first.
 #[inline(always)]
-pub(super) fn starts(set: &GeometrySet, samples: &Samples) -> [Option<Point>; 2] {
+pub(super) fn starts(set: &GeometrySet, samples: &Samples) -> Vec<Point> {
     let grid = &set.grid;
-    let mut chosen = [(f64::INFINITY, 0_usize); ROUGHNESS_NODES];
+    let mut chosen = vec![(f64::INFINITY, 0_usize); grid.roughness.len()];
     let mut sums = Vec::with_capacity(set.segments.len());
-    for index_node in 0..INDEX_NODES.len() {
+    for index_node in 0..grid.index_minus_one.len() {
         segment_sums(set, samples, index_node, &mut sums);
         for (best, distribution) in chosen.iter_mut().zip(grid.distribution.rows()) {
             let mut gram = samples.gram[0];
@@ -26,16 +26,11 @@ pub(super) fn starts(set: &GeometrySet, samples: &Samples) -> [Option<Point>; 2]
             }
         }
     }
-    let point = |node: usize| {
-        let (chi_square, index_node) = chosen[node];
-        chi_square.is_finite().then(|| Point { log: [grid.roughness[node].ln(), INDEX_NODES[index_node].ln()] })
-    };
-    let best_but = |other: Option<usize>| {
-        let nodes = (0..ROUGHNESS_NODES).filter(|&node| Some(node) != other);
-        nodes.min_by(|&a, &b| chosen[a].0.total_cmp(&chosen[b].0))
-    };
-    let first = best_but(None);
-    [first.and_then(point), best_but(first).and_then(point)]
+    let mut nodes: Vec<usize> = (0..chosen.len()).filter(|&node| chosen[node].0.is_finite()).collect();
+    nodes.sort_by(|&a, &b| chosen[a].0.total_cmp(&chosen[b].0));
+    nodes.truncate(set.effort.starts);
+    let point = |node: usize| [grid.roughness[node], grid.index_minus_one[chosen[node].1]].map(f64::ln);
+    nodes.into_iter().map(|node| Point { log: point(node) }).collect()
 }
 
 /// Per segment the inner products of F G/den at an index node with itself, the diffuse column and the data.

@@ -16,6 +16,16 @@ pub(super) const FITTED: Color = Color::Rgb(0xd5, 0x5e, 0x00);
 /// Hatching of what is missing.
 pub(super) const HATCH: Color = Color::Rgb(0x8c, 0x8c, 0x8c);
 
+/// Curves that are told apart by their colours, Okabe and Ito's.
+pub(super) const LINES: [Color; 6] = [
+    MEASURED,
+    FITTED,
+    Color::Rgb(0x00, 0x9e, 0x73),
+    Color::Rgb(0xcc, 0x79, 0xa7),
+    Color::Rgb(0xe6, 0x9f, 0x00),
+    Color::Rgb(0x56, 0xb4, 0xe9),
+];
+
 /// Fonts are sans-serif; the first is the one the PNG is drawn with.
 const FONTS: &str = "DejaVu Sans, Verdana, Helvetica, Arial, sans-serif";
 

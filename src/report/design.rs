@@ -3,7 +3,7 @@
 use kuva::render::color::Color;
 use kuva::render::render::TextAnchor;
 
-use super::canvas::{Area, Canvas, FITTED, HATCH, INK, MEASURED, Style};
+use super::canvas::{Area, Canvas, FITTED, HATCH, INK, LINES, Style};
 use super::curve::SHEET_WIDTH;
 use super::frame::{Frame, Labels, TICK_SIZE};
 use super::scale::{Scale, extent};
@@ -14,15 +14,6 @@ const LEFT: f64 = 84.0;
 const WIDTH: f64 = 612.0;
 const CURVES: f64 = 240.0;
 const PLANE: f64 = 440.0;
-/// Okabe and Ito's colours, one per parameter.
-const LINES: [Color; 6] = [
-    MEASURED,
-    FITTED,
-    Color::Rgb(0x00, 0x9e, 0x73),
-    Color::Rgb(0xcc, 0x79, 0xa7),
-    Color::Rgb(0xe6, 0x9f, 0x00),
-    Color::Rgb(0x56, 0xb4, 0xe9),
-];
 /// Numbers in their dots.
 const PAPER: Color = Color::Rgb(0xff, 0xff, 0xff);
 /// More numbers than this say nothing.

@@ -27,6 +27,7 @@ mod spectrum;
 mod spline;
 mod subject;
 mod surface;
+mod trade;
 
 pub use angle_map::AngleMap;
 pub use angle_points::AnglePoints;
@@ -42,3 +43,4 @@ pub use page::{Pictures, page};
 pub use scan::scan_figures;
 pub use spectrum::measurement_figures;
 pub use surface::surface;
+pub use trade::{Knob, Setting, trade};

@@ -14,10 +14,12 @@ the term itself. Intensity is 1. At 90 degrees the limit from inside is meant.
 import random
 import sys
 
+from gaussian_integral import norm
 from mpmath import mp, mpf, atan2, cos, degrees, exp, log, pi, sin, sqrt, tan
 
 mp.dps = 100
-DISTRIBUTIONS = ["gaussian-half-height", "gaussian", "torrance-sparrow-1967", "beckmann", "trowbridge-reitz"]
+DISTRIBUTIONS = [
+    "gaussian-half-height", "gaussian", "torrance-sparrow-1967", "gaussian-normalised", "beckmann", "trowbridge-reitz"]
 DENOMINATORS = ["cos-theta-i", "cos-theta-v", "cos-i-cos-v"]
 REFERENCES = ["none", "same-geometry", "fixed-geometry(45,0)", "fixed-geometry(-8.1,0)", "fixed-geometry(89.9,-45)"]
 RAD = pi / 180
@@ -43,6 +45,9 @@ def distribution(name, phi, r):
         along = (r * cos(phi)) ** 2
         q = sin(phi) ** 2 + along
         return r**2 / (pi * q**2), (2 - 4 * along / q) / r, (2 + 4 * along / q) / r
+    if name == "gaussian-normalised":
+        u, (over_square, by_log_width) = (phi / r) ** 2, norm(r)
+        return exp(-u) / (over_square * r**2), (2 * u - by_log_width) / r, (2 * u + by_log_width) / r
     u = {
         "gaussian-half-height": LN2 * (phi / r) ** 2,
         "gaussian": (phi / r) ** 2,
@@ -136,7 +141,7 @@ def main():
     print("# Right to 60 digits, printed to 18; made by make.py")
     print(HEADER)
     for i in range(count):
-        name, denominator, reference = DISTRIBUTIONS[i % 5], DENOMINATORS[(i // 5) % 3], REFERENCES[(i // 15) % 5]
+        name, denominator, reference = DISTRIBUTIONS[i % 6], DENOMINATORS[(i // 6) % 3], REFERENCES[(i // 18) % 5]
         where = [min(angle, 359.9999999999999) for angle in geometry(rng)]
         if reference == "same-geometry" and where[0] == 90.0:
             reference = "none"  # grows without bound

@@ -118,6 +118,7 @@ pub fn measure(truth: &Truth, grid: &[Geometry], relative: f64, random: &mut Ran
 
 /// What the peer may keep of the geometries: half-vector angles and angular factors are not made anew in every
 /// evaluation, as a careful user of the crate would have it.
+#[derive(Clone, Copy)]
 pub struct Prepared {
     pub half: HalfAngles,
     pub diffuse: f64,
@@ -144,7 +145,7 @@ pub struct Peer<'a> {
 }
 
 impl Peer<'_> {
-    fn truth(&self) -> Truth {
+    pub fn truth(&self) -> Truth {
         Truth { albedo: self.p[0], intensity: self.p[1], roughness: self.p[2].exp(), index_minus_one: self.p[3].exp() }
     }
 }
@@ -191,9 +192,20 @@ impl LeastSquaresProblem<f64, Dyn, U4> for Peer<'_> {
 
 /// The peer's chi-square and parameters from a start.
 pub fn peer_fit(grid: &[Prepared], values: &[f64], sigma: &[f64], start: &Truth) -> (f64, Truth) {
+    peer_fit_within(grid, values, sigma, start, 100)
+}
+
+/// The same, given up after 5 times `patience` evaluations; 100 is the crate's own number.
+pub fn peer_fit_within(
+    grid: &[Prepared],
+    values: &[f64],
+    sigma: &[f64],
+    start: &Truth,
+    patience: usize,
+) -> (f64, Truth) {
     let p = Vector4::new(start.albedo, start.intensity, start.roughness.ln(), start.index_minus_one.ln());
     let problem = Peer { grid, values, sigma, p };
-    let (problem, report) = LevenbergMarquardt::new().with_tol(1e-10).minimize(problem);
+    let (problem, report) = LevenbergMarquardt::new().with_tol(1e-10).with_patience(patience).minimize(problem);
     (2.0 * report.objective_function, problem.truth())
 }
 
