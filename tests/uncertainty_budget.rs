@@ -168,7 +168,9 @@ fn the_page_shows_the_budget() {
     table.push_str("\n|---|---|---|---|---|---|---|\n");
     let noise = ("noise of a reading, relative", NOISE.0, "repeats (type A), independent between readings");
     for ((name, sigma, how), c) in INPUTS.iter().chain([&noise]).zip(&contributions) {
-        let cells = c.map(|c| format!("{:.1e}", c.abs())).join(" | ");
+        // What only the rounding of a fit moves is nothing.
+        let cell = |k: usize| if c[k].abs() < 1e-7 * total[k] { "0".to_owned() } else { format!("{:.1e}", c[k].abs()) };
+        let cells = [0, 1, 2, 3].map(cell).join(" | ");
         writeln!(table, "| {name} | {sigma} | {how} | {cells} |").unwrap();
     }
     let row = |name: &str, u: [f64; 4]| format!("| **{name}** | | | {} |\n", u.map(|u| format!("{u:.1e}")).join(" | "));

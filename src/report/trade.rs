@@ -60,11 +60,12 @@ pub fn trade(knobs: &[Knob], bound: &str, text: &CurveText) -> Result<Figure, Re
         let colour = || LINES[k % LINES.len()].clone();
         let settings: Vec<&Setting> = knob.settings.iter().filter(drawn).collect();
         let line = |of: fn(&Setting) -> f64| settings.iter().map(|s| frame.point(s.cost, of(s))).collect::<Vec<_>>();
-        canvas.polyline(line(|setting| setting.bound), INK, 1.0);
-        canvas.polyline(line(|setting| setting.result), colour(), 1.8);
+        canvas.polyline(line(|setting| setting.result), colour(), 2.6);
         for setting in &settings {
             canvas.dot(frame.point(setting.cost, setting.result), 4.0, colour());
         }
+        // Above the results, which lie on it where they are as good as can be.
+        canvas.polyline(line(|setting| setting.bound), INK, 1.0);
     }
     let mut taken = Vec::new();
     for (k, setting) in knobs.iter().enumerate().flat_map(|(k, knob)| knob.settings.iter().map(move |s| (k, s))) {
