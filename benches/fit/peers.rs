@@ -12,13 +12,13 @@ use crate::speed::scans;
 use crate::timing::{Timed, time};
 use crate::{BOTH, tables, varpro_peer};
 
-/// A peer's chi-square of a scan (grid, values, uncertainties) from a start.
-type FromStart = dyn Fn(&[Prepared], &[f64], &[f64], &Truth) -> f64;
-
 /// Python takes milliseconds for each.
 const PYTHON_SCANS: usize = 200;
 /// Starts of those that are given several.
 const SEVERAL: usize = 10;
+
+/// Chi-square that another program finds from a start.
+type Peer = dyn Fn(&[Prepared], &[f64], &[f64], &Truth) -> f64;
 
 pub fn run() {
     let (scans, grid) = (scans(), paper_grid());
@@ -44,7 +44,7 @@ pub fn run() {
     });
     say("bbrf, no start, with covariance", &timed, &found);
     let mut random = Random::new(2);
-    let mut peer = |name: &str, starts: usize, fit: &FromStart| {
+    let mut peer = |name: &str, starts: usize, fit: &Peer| {
         let mut found = Vec::new();
         let timed = time(scans.len() / starts.min(4), |k| {
             let one = |_| black_box(fit(&prepared, &scans[k].values, &scans[k].sigma, &random_start(&mut random)));
