@@ -96,3 +96,34 @@ fn intervals_of_a_vague_index_are_longer_on_the_side_that_the_data_allow() {
         assert!((held.chi_square - 3.841_458_8).abs() < 2e-3, "{end}: {}", held.chi_square);
     }
 }
+
+/// Held on its bound the index is known, and the others are as certain as beside a known index; counted as free it would
+/// lend the intensity its own doubt.
+#[test]
+fn beside_an_index_on_its_bound_the_others_have_the_uncertainty_of_three_parameters() {
+    let grid = paper_grid();
+    let set = set(&grid);
+    let truth = Truth { albedo: 0.5, intensity: 20.0, roughness: 0.1, index_minus_one: 0.5 };
+    let (values, sigma) = measure(&truth, &grid, 0.05, &mut Random::new(9));
+    let fit = Fitter::new(&set, BOTH).within((1e-9, 1e9), (0.05, 0.3)).fit(&values, Some(&sigma)).unwrap();
+    assert_eq!(fit.at_bound, [false, true], "{fit:?}");
+    let found = Truth {
+        albedo: fit.bands[0].diffuse,
+        intensity: fit.bands[0].intensity,
+        roughness: fit.roughness,
+        index_minus_one: fit.index_minus_one,
+    };
+    let mut information = nalgebra::Matrix3::zeros();
+    for (geometry, sigma) in grid.iter().zip(&sigma) {
+        let [a, c, r, _] = found.evaluate(geometry).1;
+        let row = nalgebra::Vector3::new(a, c, r) / *sigma;
+        information += row * row.transpose();
+    }
+    let covariance = information.try_inverse().unwrap();
+    let claimed = fit.standard_uncertainty(0);
+    for k in 0..3 {
+        let expected = covariance[(k, k)].sqrt();
+        assert!((claimed[k] / expected - 1.0).abs() < 1e-6, "parameter {k}: {} {expected}", claimed[k]);
+    }
+    assert!(claimed[3].is_nan(), "a parameter on its bound has no ordinary uncertainty");
+}

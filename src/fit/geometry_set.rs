@@ -184,18 +184,6 @@ impl GeometrySet {
         self.diffuse.len()
     }
 
-    /// What to measure so that the index is told from the intensity: F bends only where light and facet are far apart.
-    pub(super) fn advice_for_index(&self) -> String {
-        let steepest = self.halves.iter().map(|half| half.sin2_q.sqrt().asin().to_degrees()).fold(0.0, f64::max);
-        if steepest < 75.0 {
-            format!(
-                "measure beyond 60 degrees (mirror directions reach {steepest:.0} degrees between light and facet so far)"
-            )
-        } else {
-            format!("measure more often near the mirror direction at {steepest:.0} degrees, or with less noise")
-        }
-    }
-
     /// True when no geometry was given.
     #[must_use]
     pub fn is_empty(&self) -> bool {

@@ -45,7 +45,7 @@ pub(super) fn findings(
         ));
     }
     match fits.list.as_slice() {
-        [one] => list.extend(of_one(one, set, terms, has_sigma)),
+        [one] => list.extend(of_one(one, set, data, terms, has_sigma)),
         many => list.extend(of_many(many, data, terms, has_sigma)),
     }
     list
@@ -122,7 +122,7 @@ fn of_many(fits: &[Observed], data: &Reduced, terms: Terms, has_sigma: bool) -> 
 }
 
 /// Findings of one fit, of one emission value or of many together.
-fn of_one(observed: &Observed, set: &GeometrySet, terms: Terms, has_sigma: bool) -> Vec<String> {
+fn of_one(observed: &Observed, set: &GeometrySet, data: &Reduced, terms: Terms, has_sigma: bool) -> Vec<String> {
     let fit = &observed.fit;
     let mut list = Vec::new();
     if terms.specular && !fit.has_specular() {
@@ -137,7 +137,7 @@ fn of_one(observed: &Observed, set: &GeometrySet, terms: Terms, has_sigma: bool)
         list.extend(at_zero("diffuse", fit.bands.iter().map(|band| band.diffuse)));
     }
     if fit.has_specular() {
-        list.extend(specular(observed, set));
+        list.extend(specular(observed, set, data));
     }
     list
 }
@@ -155,7 +155,7 @@ fn misfit(fit: &Fit, has_sigma: bool) -> Option<String> {
     })
 }
 
-fn specular(observed: &Observed, set: &GeometrySet) -> Vec<String> {
+fn specular(observed: &Observed, set: &GeometrySet, data: &Reduced) -> Vec<String> {
     let fit = &observed.fit;
     let mut list = Vec::new();
     list.extend(at_zero("specular", fit.bands.iter().map(|band| band.intensity)));
@@ -168,7 +168,7 @@ fn specular(observed: &Observed, set: &GeometrySet) -> Vec<String> {
     list.extend(if fit.at_bound[1] {
         Some(on_edge("refractive index", fit.refractive_index(), (index_low, index_high)))
     } else {
-        index(observed, set)
+        index(observed, data)
     });
     list
 }
@@ -204,7 +204,7 @@ fn at_zero(term: &str, amplitudes: impl ExactSizeIterator<Item = f64>) -> Option
     })
 }
 
-fn index(observed: &Observed, set: &GeometrySet) -> Option<String> {
+fn index(observed: &Observed, data: &Reduced) -> Option<String> {
     let fit = &observed.fit;
     let sigma = fit.log_sigma[1];
     if sigma.is_nan() {
@@ -228,8 +228,20 @@ fn index(observed: &Observed, set: &GeometrySet) -> Option<String> {
          normal reflectance, intensity x F(0), is known to {:.2} %; {}",
         between(&interval),
         100.0 * product,
-        set.advice_for_index()
+        advice_for_index(data)
     ))
+}
+
+/// What to measure so that the index is told from the intensity: F bends only where light and facet are far apart.
+fn advice_for_index(data: &Reduced) -> String {
+    let used = (0..data.geometry.len()).filter(|&row| data.values.column(row).iter().any(|value| value.is_finite()));
+    let angle = |row: usize| data.geometry[row].half_angles().sin2_q.sqrt().asin().to_degrees();
+    let steepest = used.map(angle).fold(0.0, f64::max);
+    if steepest < 75.0 {
+        format!("measure beyond 60 degrees (light and facet are at most {steepest:.0} degrees apart so far)")
+    } else {
+        format!("measure more often near the mirror direction at {steepest:.0} degrees, or with less noise")
+    }
 }
 
 /// Relative standard uncertainty of intensity times ((n-1)/(n+1))^2.

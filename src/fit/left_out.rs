@@ -61,7 +61,7 @@ impl LeftOut {
         [
             (
                 self.no_value,
-                "without a number that may be used (missing, flagged, below the surface or of unknown geometry)",
+                "without a number that may be used (missing, flagged, masked, below the surface or of unknown geometry)",
             ),
             (self.undefined_geometry, "at a grazing geometry, where a term has no value"),
             (

@@ -42,14 +42,14 @@ pub(super) fn complete(reduced: &Reduced<'_>, unit: Option<f64>, fit: &mut Fit) 
     let mut triangles = Vec::with_capacity(fit.bands.len());
     for (b, band) in fit.bands.iter_mut().enumerate() {
         let products = &reduced.products[b];
-        let gram = gram(products, band.intensity);
+        let gram = gram(products, band.intensity, fit.at_bound);
         // A chi-square formed from sums is no better than their rounding.
         let exact = band.chi_square > CANCELLED * products.gram.syy;
         match cholesky(&gram).filter(|_| exact) {
             Some(triangle) => triangles.push(triangle),
             None => {
                 let sample = reduced.samples.sample(b);
-                let mut jacobian = jacobian(reduced, &sample, band.intensity);
+                let mut jacobian = jacobian(reduced, &sample, band.intensity, fit.at_bound);
                 band.chi_square = residual_square(&jacobian, &sample, band.diffuse, band.intensity);
                 triangles.push(triangle(&mut jacobian));
             }
@@ -59,7 +59,7 @@ pub(super) fn complete(reduced: &Reduced<'_>, unit: Option<f64>, fit: &mut Fit) 
         Share::ShapeAndIntensity if fit.bands.len() > 1 => 1,
         _ => 2,
     };
-    let common = common(&triangles, own);
+    let common = common(&triangles, own, fit.at_bound);
     finish(&triangles, &common, unit, fit);
 }
 
@@ -101,15 +101,16 @@ fn finish(triangles: &[(Triangle, [f64; 4])], common: &Common, unit: Option<f64>
     fit.singular_values.clone_from(&common.singular);
 }
 
-/// Inner products of the four columns.
+/// Inner products of the four columns. A parameter that is held on a bound has none: the others know it.
 #[inline(always)]
-fn gram(p: &Products, intensity: f64) -> Triangle {
-    let (c, g) = (intensity, &p.gram);
+fn gram(p: &Products, intensity: f64, held: [bool; 2]) -> Triangle {
+    let [r, m] = held.map(|held| if held { 0.0 } else { intensity });
+    let g = &p.gram;
     let upper = [
-        [g.s11, g.s12, c * p.r1, c * p.m1],
-        [0.0, g.s22, c * p.r2, c * p.m2],
-        [0.0, 0.0, c * c * p.rr, c * c * p.rm],
-        [0.0, 0.0, 0.0, c * c * p.mm],
+        [g.s11, g.s12, r * p.r1, m * p.m1],
+        [0.0, g.s22, r * p.r2, m * p.m2],
+        [0.0, 0.0, r * r * p.rr, r * m * p.rm],
+        [0.0, 0.0, 0.0, m * m * p.mm],
     ];
     std::array::from_fn(|i| std::array::from_fn(|j| upper[i.min(j)][i.max(j)]))
 }
@@ -138,7 +139,8 @@ fn cholesky(gram: &Triangle) -> Option<(Triangle, [f64; 4])> {
 }
 
 /// The four weighted columns, each contiguous.
-fn jacobian(reduced: &Reduced<'_>, sample: &Sample<'_>, intensity: f64) -> [Vec<f64>; 4] {
+fn jacobian(reduced: &Reduced<'_>, sample: &Sample<'_>, intensity: f64, held: [bool; 2]) -> [Vec<f64>; 4] {
+    let [by_r, by_m] = held.map(|held| if held { 0.0 } else { intensity });
     let root: Vec<f64> = sample.weight.iter().map(|weight| weight.sqrt()).collect();
     let diffuse = sample
         .weighted_diffuse
@@ -148,7 +150,7 @@ fn jacobian(reduced: &Reduced<'_>, sample: &Sample<'_>, intensity: f64) -> [Vec<
         .collect();
     let scaled = |column: &[f64], scale: f64| column.iter().zip(&root).map(|(x, root)| scale * root * x).collect();
     let columns = &reduced.columns;
-    [diffuse, scaled(&columns.specular, 1.0), scaled(&columns.by_r, intensity), scaled(&columns.by_m, intensity)]
+    [diffuse, scaled(&columns.specular, 1.0), scaled(&columns.by_r, by_r), scaled(&columns.by_m, by_m)]
 }
 
 fn residual_square(jacobian: &[Vec<f64>; 4], sample: &Sample<'_>, diffuse: f64, intensity: f64) -> f64 {
@@ -190,10 +192,12 @@ fn triangle<const K: usize>(columns: &mut [Vec<f64>; K]) -> ([[f64; K]; K], [f64
 
 /// Stacks what each emission value's own columns leave of the common ones, and inverts it by its singular values.
 #[inline(always)]
-fn common(triangles: &[(Triangle, [f64; 4])], own: usize) -> Common {
+fn common(triangles: &[(Triangle, [f64; 4])], own: usize, held: [bool; 2]) -> Common {
     let count = 4 - own;
     let norm = |k: usize| triangles.iter().map(|(_, norms)| norms[own + k] * norms[own + k]).sum::<f64>().sqrt();
-    let norms: [f64; 3] = std::array::from_fn(|k| if k < count { norm(k) } else { 1.0 });
+    // A held parameter has a column of zeros: a direction of its own, of which nothing is known, and which touches no other.
+    let is_held = |k: usize| (own + k).checked_sub(2).is_some_and(|shape| held[shape]);
+    let norms: [f64; 3] = std::array::from_fn(|k| if k < count && !is_held(k) { norm(k) } else { 1.0 });
     if norms.contains(&0.0) {
         return Common { own, covariance: [[f64::NAN; 3]; 3], singular: vec![0.0; count] };
     }

@@ -438,10 +438,16 @@ fn interval_text(parameter: &ParameterResult) -> String {
     else {
         return String::new();
     };
+    // As many digits as the uncertainty has, and one more.
+    let sigma = match parameter.standard_uncertainty {
+        NumberOrList::Number(Some(sigma)) if sigma > 0.0 => sigma,
+        _ => 1e-3,
+    };
+    let digits = (1.0 - sigma.log10().floor()).clamp(0.0, 12.0) as usize;
     match (low, high) {
-        (Some(low), Some(high)) => format!(", 95 %: {low:.4} to {high:.4}"),
-        (Some(low), None) => format!(", 95 %: above {low:.4}"),
-        (None, Some(high)) => format!(", 95 %: below {high:.4}"),
+        (Some(low), Some(high)) => format!(", 95 %: {low:.digits$} to {high:.digits$}"),
+        (Some(low), None) => format!(", 95 %: above {low:.digits$}"),
+        (None, Some(high)) => format!(", 95 %: below {high:.digits$}"),
         (None, None) => ", 95 %: open on both sides".to_owned(),
     }
 }
