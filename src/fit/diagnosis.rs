@@ -2,11 +2,13 @@
 
 use ndarray::{Array2, ArrayView2, Zip};
 
-use super::measurement::{FitError, FitOptions, Prepared, fit_reduced, prepared};
+use super::error::DataError;
+use super::measurement::{Prepared, fit_reduced, prepared};
+use super::options::{FitError, FitOptions};
 use super::outcome::Fit;
 use super::profile::{Intervals, ProfileCurve};
 use super::repeats::Repeats;
-use super::solve::{DataError, Fitter, Terms};
+use super::solve::{Fitter, Terms};
 use crate::dataset::{Document, Measurement, Reduced};
 
 /// Probability of the intervals of a diagnosis.

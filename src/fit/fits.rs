@@ -4,13 +4,14 @@ use ndarray::{Array2, s};
 use rayon::prelude::*;
 
 use super::curvature::Share;
+use super::error::DataError;
 use super::joint::{FittedEffect, Joint};
 use super::loss::Loss;
-use super::measurement::{Choice, FitOptions};
 use super::observed::{Observations, Observed};
+use super::options::{Choice, FitOptions};
 use super::outcome::{Fit, Stop};
 use super::profile::Interval;
-use super::solve::{DataError, Fitter};
+use super::solve::Fitter;
 use super::statistics::SINGULAR;
 use crate::dataset::{Bound, FittedParameter, FittedTerm, Reduced};
 use crate::quantity::Reference;

@@ -3,9 +3,9 @@
 
 use ndarray::ArrayView2;
 
+use super::error::DataError;
 use super::left_out::reason;
 use super::samples::LANES;
-use super::solve::DataError;
 
 /// Values and uncertainties may have magnitudes from 1 over this to this, and a value may be so many uncertainties large:
 /// then every sum of squares of a million values is finite, with room for the angular factors.

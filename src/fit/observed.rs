@@ -3,11 +3,12 @@
 use ndarray::{Array2, ArrayView2};
 
 use super::columns::{Columns, Point};
+use super::error::DataError;
 use super::loss::Loss;
 use super::outcome::Fit;
 use super::profile::Intervals;
 use super::reweighted::Reweighted;
-use super::solve::{DataError, Fitter};
+use super::solve::Fitter;
 use crate::dataset::Bound;
 
 /// What was observed.

@@ -11,9 +11,10 @@ use statrs::distribution::{ContinuousCDF, Normal, StudentsT};
 
 use super::columns::Point;
 use super::curvature::Held;
+use super::error::DataError;
 use super::outcome::Fit;
 use super::polish::{Fixed, Polished, Reduced};
-use super::solve::{DataError, Fitter, Prepared};
+use super::solve::{Fitter, Prepared};
 
 pub use curve::{ProfileCurve, Profiled};
 

@@ -4,13 +4,14 @@ use std::collections::HashSet;
 
 use ndarray::Array2;
 
+use super::error::DataError;
 use super::left_out::reason;
 use super::loss::{Loss, Working, expected, one_sided};
 use super::magnitude;
 use super::observed::{Observations, Observed};
 use super::outcome::Fit;
 use super::profile::Intervals;
-use super::solve::{DataError, Fitter};
+use super::solve::Fitter;
 use crate::dataset::{Bound, Side};
 
 /// Most passes of least squares; ten are usual, for Tukey's loss thirty.

@@ -12,10 +12,12 @@ mod verdict;
 
 use rayon::prelude::*;
 
+use super::error::DataError;
 use super::geometry_set::{GeometrySet, SetError};
-use super::measurement::{FitError, FitOptions, Prepared, prepared};
+use super::measurement::{Prepared, prepared};
+use super::options::{FitError, FitOptions};
 use super::outcome::Fit;
-use super::solve::{DataError, Fitter};
+use super::solve::Fitter;
 use crate::dataset::{Document, Measurement, Reduced};
 use crate::quantity::{Geometry, Reference};
 use crate::terms::{Denominator, TermKind, Undefined, diffuse_factor, specular_factor};
