@@ -149,6 +149,11 @@ impl Model {
             shared_relative.push(shared.unwrap_or(0.0));
         }
         let stored = |i: usize, j: usize| self.covariance.get((i, j)).copied().unwrap_or(f64::NAN);
+        // The terms of a prediction are those that were seen, and stand in the order of these.
+        let seen = |position: &usize| self.terms[*position].is_seen_at(emission);
+        let positions: Vec<usize> = (0..self.terms.len()).filter(seen).collect();
+        all.place = positions.iter().map(|position| all.place[*position]).collect();
+        let shared_relative = positions.iter().map(|position| shared_relative[*position]).collect();
         // A name that is none of the terms' is a finding of the validator; here it enters nothing.
         let _ = all.enter(&self.covariance_parameters, stored);
         all.shared_relative = has_shared.then_some(shared_relative);

@@ -29,12 +29,14 @@ impl FittedTerm {
         if parameter.value.len() == 1 { parameter.value.first() } else { parameter.value.get(emission) }.copied()
     }
 
-    /// True for a specular term that was not seen at an emission value.
-    fn is_undefined_and_zero(&self, emission: usize) -> bool {
+    /// False for a specular term that was not seen at an emission value: its intensity is 0 and its shape undefined, and it
+    /// adds nothing.
+    #[must_use]
+    pub fn is_seen_at(&self, emission: usize) -> bool {
         let names = self.kind.parameters();
-        self.kind == TermKind::TorranceSparrow
-            && self.parameter_at(names[0].name, emission) == Some(0.0)
-            && self.parameter_at(names[1].name, emission).is_some_and(f64::is_nan)
+        self.kind != TermKind::TorranceSparrow
+            || self.parameter_at(names[0].name, emission) != Some(0.0)
+            || self.parameter_at(names[1].name, emission).is_none_or(|roughness| !roughness.is_nan())
     }
 
     /// The term at one emission value.
@@ -75,14 +77,12 @@ impl Model {
         known.fold(Effects::default(), |effects, (effect, value)| effects.with(effect, value))
     }
 
-    /// The terms at one emission value of the fitted numbers; without a specular term whose intensity is 0 there and whose
-    /// shape is undefined, which adds nothing.
+    /// The terms that were seen at one emission value of the fitted numbers.
     ///
     /// # Errors
     /// [`TermsError`] when a parameter is missing.
     pub fn terms_at(&self, emission: usize) -> Result<Vec<Term>, TermsError> {
-        let adds = |term: &&FittedTerm| !term.is_undefined_and_zero(emission);
-        self.terms.iter().filter(adds).map(|term| term.term_at(emission)).collect()
+        self.terms.iter().filter(|term| term.is_seen_at(emission)).map(|term| term.term_at(emission)).collect()
     }
 }
 

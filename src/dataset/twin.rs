@@ -51,6 +51,11 @@ impl Change {
         let other = NoTwin::OtherFunction { from, into };
         let width = from.gaussian_width(roughness).ok_or_else(|| other.clone())?;
         let unit = into.gaussian_width(1.0).ok_or(other)?;
+        if roughness.is_nan() {
+            // A term that was not seen: an intensity of 0 stays one, and a shape that is undefined, too.
+            let ratio = from.gaussian_width(1.0).map_or(f64::NAN, |old| old / unit);
+            return Ok(Self { intensity: 1.0, roughness: ratio, by_roughness: 0.0 });
+        }
         let norm = gaussian_integral(width);
         let (intensity, slope) = match (from, into) {
             (Distribution::GaussianNormalised, Distribution::GaussianNormalised) => (1.0, 0.0),
@@ -67,7 +72,7 @@ impl Change {
 
 /// The model with every specular term in another form of the same function, with its covariance, under an id of its own.
 ///
-/// Predictions and residuals stay. Where amplitudes of several emission values were fitted, a file does not hold their
+/// Predictions and residuals stay. Where the norm changes, the intensity has no interval any more. Where amplitudes of several emission values were fitted, a file does not hold their
 /// covariance with the roughness; then, if the norm changes, their standard uncertainties are not known and are NaN.
 ///
 /// # Errors
@@ -81,14 +86,15 @@ pub fn with_distribution(model: &Model, into: Distribution) -> Result<Model, NoT
         specular += 1;
         let before = term.distribution.unwrap_or(Distribution::GaussianHalfHeight);
         from = if before == into { from } else { before };
-        let roughness = term.parameter_at(ROUGHNESS.name, 0).ok_or(NoTwin::Parameter(ROUGHNESS.name))?;
-        let change = Change::new(before, into, roughness)?;
+        let changes = changes(term, before, into)?;
         let index = |parameter: &str| {
             let name = model.covariance_name(position, parameter);
             model.covariance_parameters.iter().position(|one| *one == name)
         };
         let (c, r) = (index(INTENSITY.name), index(ROUGHNESS.name));
-        lost |= convert_term(term, into, &change, c.zip(r).is_some())?;
+        lost |= convert_term(term, into, &changes, c.zip(r).is_some())?;
+        // A covariance is that of one number each.
+        let [change, ..] = changes[..] else { return Err(NoTwin::Parameter(ROUGHNESS.name)) };
         if let Some(r) = r {
             jacobian[(r, r)] = change.roughness;
         }
@@ -128,23 +134,55 @@ pub fn with_distribution(model: &Model, into: Distribution) -> Result<Model, NoT
     Ok(twin)
 }
 
+/// How each value of a term changes: one change where one roughness serves all, else one for each emission value.
+fn changes(term: &FittedTerm, before: Distribution, into: Distribution) -> Result<Vec<Change>, NoTwin> {
+    let count = |name: &'static str| {
+        let parameter = term.parameters.iter().find(|one| one.name == name).ok_or(NoTwin::Parameter(name))?;
+        Ok(parameter.value.len())
+    };
+    let (roughnesses, intensities) = (count(ROUGHNESS.name)?, count(INTENSITY.name)?);
+    if roughnesses == 0 || (roughnesses > 1 && intensities != roughnesses) {
+        return Err(NoTwin::Parameter(ROUGHNESS.name));
+    }
+    let of = |emission: usize| {
+        let roughness = term.parameter_at(ROUGHNESS.name, emission).ok_or(NoTwin::Parameter(ROUGHNESS.name))?;
+        Change::new(before, into, roughness)
+    };
+    (0..roughnesses).map(of).collect()
+}
+
 /// Converts the numbers of a term; true where uncertainties of its intensities are lost.
-fn convert_term(term: &mut FittedTerm, into: Distribution, change: &Change, tied: bool) -> Result<bool, NoTwin> {
+fn convert_term(term: &mut FittedTerm, into: Distribution, changes: &[Change], tied: bool) -> Result<bool, NoTwin> {
     term.distribution = Some(into);
     let find = |parameters: &mut Vec<FittedParameter>, name: &'static str| {
         parameters.iter().position(|one| one.name == name).ok_or(NoTwin::Parameter(name))
     };
-    let scale = |values: &mut Vec<f64>, factor: f64| values.iter_mut().for_each(|value| *value *= factor);
+    let scale = |values: &mut Vec<f64>, factor: fn(&Change) -> f64| {
+        let each = |k: usize| changes.get(k).or(changes.first()).map_or(f64::NAN, factor);
+        values.iter_mut().enumerate().for_each(|(k, value)| *value *= each(k));
+    };
     let roughness = find(&mut term.parameters, ROUGHNESS.name)?;
     let roughness = &mut term.parameters[roughness];
-    scale(&mut roughness.value, change.roughness);
-    scale(&mut roughness.standard_uncertainty, change.roughness);
+    for numbers in [
+        &mut roughness.value,
+        &mut roughness.standard_uncertainty,
+        &mut roughness.interval_low,
+        &mut roughness.interval_high,
+    ] {
+        scale(numbers, |change| change.roughness);
+    }
     roughness.unit = into.roughness_unit().to_owned();
     let intensity = find(&mut term.parameters, INTENSITY.name)?;
     let intensity = &mut term.parameters[intensity];
-    scale(&mut intensity.value, change.intensity);
-    scale(&mut intensity.standard_uncertainty, change.intensity);
-    let lost = change.by_roughness != 0.0 && !tied;
+    scale(&mut intensity.value, |change| change.intensity);
+    scale(&mut intensity.standard_uncertainty, |change| change.intensity);
+    let depends = changes.iter().any(|change| change.by_roughness != 0.0);
+    if depends {
+        // The profile of a product is not the product of a profile: only a new fit has it.
+        intensity.interval_low.clear();
+        intensity.interval_high.clear();
+    }
+    let lost = depends && !tied;
     if lost {
         intensity.standard_uncertainty.iter_mut().for_each(|sigma| *sigma = f64::NAN);
     }

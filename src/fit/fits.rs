@@ -29,6 +29,8 @@ pub(super) struct Fits {
     pub(super) correlated: bool,
     /// The instrument's effects after the fit.
     pub(super) effects: Vec<FittedEffect>,
+    /// The box that was searched: of the roughness in its unit, and of n - 1.
+    pub(super) searched: [(f64, f64); 2],
 }
 
 impl Fits {
@@ -58,7 +60,8 @@ impl Fits {
             [run] => vec![fit(run)?],
             runs => runs.par_iter().map(fit).collect::<Result<_, _>>()?,
         };
-        Ok(Self { list, shared_intensity, correlated: false, effects: Vec::new() })
+        let searched = fitter.bounds.map(|(low, high)| (low.exp(), high.exp()));
+        Ok(Self { list, shared_intensity, correlated: false, effects: Vec::new(), searched })
     }
 
     /// Goes on to a joint fit where errors hang together or the instrument has effects; says whether that was called for and

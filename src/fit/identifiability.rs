@@ -1,7 +1,7 @@
 //! What the data cannot tell, in words and numbers.
 
 use super::fits::Fits;
-use super::geometry_set::{GeometrySet, INDEX_BOX};
+use super::geometry_set::GeometrySet;
 use super::joint::FittedEffect;
 use super::left_out::LeftOut;
 use super::observed::Observed;
@@ -45,7 +45,7 @@ pub(super) fn findings(
         ));
     }
     match fits.list.as_slice() {
-        [one] => list.extend(of_one(one, set, data, terms, has_sigma)),
+        [one] => list.extend(of_one(one, fits.searched, set, data, terms, has_sigma)),
         many => list.extend(of_many(many, data, terms, has_sigma)),
     }
     list
@@ -122,7 +122,14 @@ fn of_many(fits: &[Observed], data: &Reduced, terms: Terms, has_sigma: bool) -> 
 }
 
 /// Findings of one fit, of one emission value or of many together.
-fn of_one(observed: &Observed, set: &GeometrySet, data: &Reduced, terms: Terms, has_sigma: bool) -> Vec<String> {
+fn of_one(
+    observed: &Observed,
+    searched: [(f64, f64); 2],
+    set: &GeometrySet,
+    data: &Reduced,
+    terms: Terms,
+    has_sigma: bool,
+) -> Vec<String> {
     let fit = &observed.fit;
     let mut list = Vec::new();
     if terms.specular && !fit.has_specular() {
@@ -137,7 +144,7 @@ fn of_one(observed: &Observed, set: &GeometrySet, data: &Reduced, terms: Terms, 
         list.extend(at_zero("diffuse", fit.bands.iter().map(|band| band.diffuse)));
     }
     if fit.has_specular() {
-        list.extend(specular(observed, set, data));
+        list.extend(specular(observed, searched, set, data));
     }
     list
 }
@@ -155,18 +162,19 @@ fn misfit(fit: &Fit, has_sigma: bool) -> Option<String> {
     })
 }
 
-fn specular(observed: &Observed, set: &GeometrySet, data: &Reduced) -> Vec<String> {
+fn specular(observed: &Observed, searched: [(f64, f64); 2], set: &GeometrySet, data: &Reduced) -> Vec<String> {
     let fit = &observed.fit;
     let mut list = Vec::new();
     list.extend(at_zero("specular", fit.bands.iter().map(|band| band.intensity)));
-    let (index_low, index_high) = (1.0 + INDEX_BOX.0, 1.0 + INDEX_BOX.1);
+    let [of_roughness, (index_low, index_high)] = searched;
+    let of_index = (1.0 + index_low, 1.0 + index_high);
     list.extend(if fit.at_bound[0] {
-        Some(on_edge("roughness", fit.roughness, set.roughness_box))
+        Some(on_edge("roughness", fit.roughness, of_roughness))
     } else {
         roughness(observed, set)
     });
     list.extend(if fit.at_bound[1] {
-        Some(on_edge("refractive index", fit.refractive_index(), (index_low, index_high)))
+        Some(on_edge("refractive index", fit.refractive_index(), of_index))
     } else {
         index(observed, data)
     });

@@ -98,7 +98,9 @@ fn finish(triangles: &[(Triangle, [f64; 4])], common: &Common, unit: Option<f64>
         let sigma = |k: usize| (common.covariance[at(k)][at(k)] / unit_or_residual).sqrt();
         fit.log_sigma = [0, 1].map(|k| if fit.at_bound[k] { f64::NAN } else { sigma(k) });
     }
-    fit.singular_values.clone_from(&common.singular);
+    // A held parameter is no direction that the data could tell: its zero, one of the last, is none of theirs.
+    let held = fit.at_bound.iter().filter(|held| **held).count();
+    fit.singular_values = common.singular[..common.singular.len().saturating_sub(held)].to_vec();
 }
 
 /// Inner products of the four columns. A parameter that is held on a bound has none: the others know it.

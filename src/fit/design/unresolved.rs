@@ -26,8 +26,10 @@ pub(super) fn sentences(guess: &Guess, geometry: &[Geometry], directions: &Direc
         if relative > NOTHING {
             let why = reason(guess, geometry, one.parameter);
             list.push(format!(
-                "{}: not determined, its predicted standard uncertainty ({:.2e}) is above its own size ({}){why}",
-                one.name, sigma[k], one.scale
+                "{}: not determined, its predicted standard uncertainty ({}) is above its own size ({}){why}",
+                one.name,
+                short(sigma[k]),
+                short(one.scale)
             ));
         }
     }
@@ -86,4 +88,15 @@ fn roughness(term: &TorranceSparrow, geometry: &[Geometry]) -> String {
          direction",
         2.0 * best
     )
+}
+
+/// A number in four digits, as people write it.
+fn short(x: f64) -> String {
+    let size = x.abs();
+    if (1e-3..1e4).contains(&size) {
+        let digits = (3.0 - size.log10().floor()).clamp(0.0, 6.0) as usize;
+        format!("{x:.digits$}")
+    } else {
+        format!("{x:.3e}")
+    }
 }

@@ -56,7 +56,8 @@ impl Shapes {
 /// Albedo of all terms with its standard uncertainty; `None` where one of the two is not known.
 fn of_terms(model: &Model, emission: usize, incidence: &Direction, shapes: &mut Shapes) -> Option<(f64, f64)> {
     let (mut albedo, mut slopes, mut relative) = (0.0, Vec::new(), 0.0_f64);
-    for (position, fitted) in model.terms.iter().enumerate().filter(|(_, term)| term.kind != TermKind::Luminescent) {
+    let counts = |term: &FittedTerm| term.kind != TermKind::Luminescent && term.is_seen_at(emission);
+    for (position, fitted) in model.terms.iter().enumerate().filter(|(_, term)| counts(term)) {
         let of_term = shapes.albedo(position, &fitted.term_at(emission).ok()?, incidence)?;
         albedo += of_term.value;
         for (parameter, slope) in fitted.kind.parameters().iter().zip(of_term.by) {
