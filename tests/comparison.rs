@@ -2,13 +2,15 @@
 #![allow(unreachable_pub, clippy::unwrap_used)]
 
 mod common {
+    pub mod documents;
     pub mod scans;
 }
 
-use bbrf::dataset::{Acquisition, Document, Id, Measurement, Role};
+use bbrf::dataset::Document;
 use bbrf::fit::{Comparison, Criterion, FitOptions, Shape, compare_measurement};
-use bbrf::quantity::{EmissionAxis, Geometry, Quantity, QuantityKind, Reference, SignHabit, Uncertainty};
+use bbrf::quantity::{Geometry, Reference, SignHabit};
 use bbrf::terms::{Denominator, Distribution, Term, TorranceSparrow};
+use common::documents::scan_document;
 use common::scans::Random;
 use ndarray::Array2;
 
@@ -22,18 +24,9 @@ fn scan(angles: &[f64], terms: &[Term], noise: f64, has_sigma: bool, seed: u64) 
         .map(|geometry| bbrf::dataset::predict(terms, geometry, &Reference::SameGeometry).unwrap().total())
         .collect();
     let values: Vec<f64> = exact.iter().map(|value| value * (1.0 + noise * random.normal())).collect();
-    let shape = (grid.len(), 1);
-    let mut quantity = Quantity::unstated(QuantityKind::BandRadianceFactor);
-    quantity.reference = Reference::SameGeometry;
-    let acquisitions = grid.iter().zip(0..).map(|(geometry, order)| Acquisition::at(Some(*geometry), order)).collect();
-    let values = Array2::from_shape_vec(shape, values).unwrap();
-    let emission = EmissionAxis::Band { band: None };
-    let mut measurement =
-        Measurement::new(Id::new("scan").unwrap(), Role::Sample, quantity, emission, acquisitions, values);
-    let sigma = exact.iter().map(|value| noise * value).collect();
-    let standard = has_sigma.then(|| Array2::from_shape_vec(shape, sigma).unwrap().into_shared());
-    measurement.uncertainty = Uncertainty { standard, ..Uncertainty::default() };
-    Document { measurements: vec![measurement], ..Document::default() }
+    let column = |values: Vec<f64>| Array2::from_shape_vec((grid.len(), 1), values).unwrap();
+    let sigma = has_sigma.then(|| column(exact.iter().map(|value| noise * value).collect()));
+    scan_document(&grid, Reference::SameGeometry, column(values), sigma)
 }
 
 fn compare(document: &Document) -> Comparison {

@@ -2,6 +2,7 @@
 #![allow(unreachable_pub, clippy::unwrap_used)]
 
 mod common {
+    pub mod documents;
     pub mod scans;
 }
 
@@ -9,19 +10,19 @@ use std::path::Path;
 
 use assert_cmd::Command;
 use bbrf::container::write_file;
-use bbrf::dataset::{Acquisition, Document, Id, Measurement, Role};
+use bbrf::dataset::Document;
 use bbrf::fit::{
     Diagnosis, FitOptions, Fitter, GeometrySet, Profiled, Share, Terms, diagnose_measurement, fit_measurement,
 };
-use bbrf::quantity::{
-    Bandpass, EmissionAxis, Geometry, Quantity, QuantityKind, Reference, SignHabit, Uncertainty, WavelengthAxis,
-};
+use bbrf::quantity::{Geometry, Reference, SignHabit};
 use bbrf::report::diagnosis_page;
 use bbrf::terms::{Denominator, Distribution};
+use common::documents::measured_document;
 use common::scans::{Random, Truth, measure, paper_grid};
 use ndarray::{Array2, ArrayView1, Axis};
 
 const BOTH: Terms = Terms { diffuse: true, specular: true };
+const FIXED: Reference = Reference::FixedGeometry { theta_i_deg: 0.0, theta_v_deg: 45.0 };
 const TRUTH: Truth = Truth { albedo: 0.5, intensity: 20.0, roughness: 0.15, index_minus_one: 0.5 };
 
 fn set(grid: &[Geometry]) -> GeometrySet {
@@ -129,31 +130,11 @@ fn a_profile_meets_its_level_at_the_ends_of_the_interval() {
 }
 
 fn document(grid: &[Geometry], bands: usize, noise: f64, seed: u64) -> Document {
-    let mut random = Random::new(seed);
-    let shape = (grid.len(), bands);
-    let (mut values, mut sigma) = (Array2::zeros(shape), Array2::zeros(shape));
-    for band in 0..bands {
-        let truth = Truth { albedo: TRUTH.albedo * (1.0 + 0.1 * band as f64), ..TRUTH };
-        let (measured, uncertain) = measure(&truth, grid, noise, &mut random);
-        values.column_mut(band).assign(&ArrayView1::from(&measured));
-        sigma.column_mut(band).assign(&ArrayView1::from(&uncertain));
-    }
-    let spectral = bands > 1;
-    let mut quantity =
-        Quantity::unstated(if spectral { QuantityKind::RadianceFactor } else { QuantityKind::BandRadianceFactor });
-    quantity.reference = Reference::FixedGeometry { theta_i_deg: 0.0, theta_v_deg: 45.0 };
-    let nm = (0..bands).map(|band| 500.0 + 10.0 * band as f64).collect();
-    let emission = match spectral {
-        true => EmissionAxis::Wavelengths(WavelengthAxis::new(nm, Bandpass::Unstated).unwrap()),
-        false => EmissionAxis::Band { band: None },
-    };
-    let acquisitions = grid.iter().zip(0..).map(|(g, order)| Acquisition::at(Some(*g), order)).collect();
-    let measurement = Measurement {
-        title: Some("A <sheet> & its twin".to_owned()),
-        uncertainty: Uncertainty { standard: Some(sigma.into_shared()), ..Uncertainty::default() },
-        ..Measurement::new(Id::new("scan").unwrap(), Role::Sample, quantity, emission, acquisitions, values)
-    };
-    Document { measurements: vec![measurement], ..Document::default() }
+    let brighter = |band: usize| Truth { albedo: TRUTH.albedo * (1.0 + 0.1 * band as f64), ..TRUTH };
+    let truths: Vec<Truth> = (0..bands).map(brighter).collect();
+    let mut document = measured_document(grid, FIXED, &truths, noise, &mut Random::new(seed));
+    document.measurements[0].title = Some("A <sheet> & its twin".to_owned());
+    document
 }
 
 fn page_of(document: &Document, options: &FitOptions) -> String {

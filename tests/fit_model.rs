@@ -2,36 +2,23 @@
 #![allow(unreachable_pub, clippy::unwrap_used)]
 
 mod common {
+    pub mod documents;
     pub mod scans;
 }
 
-use bbrf::dataset::{Acquisition, Document, Id, Measurement, Model, Reduction, Role};
+use bbrf::dataset::{Document, Model, Reduction};
 use bbrf::fit::{FitError, FitOptions, fit_measurement};
-use bbrf::quantity::{
-    Component, CorrelatedOver, EmissionAxis, Geometry, Part, Quantity, QuantityKind, Reference, SignHabit, Uncertainty,
-};
+use bbrf::quantity::{Component, CorrelatedOver, Geometry, Part, Reference, SignHabit};
 use bbrf::terms::TermKind;
+use common::documents::scan_document;
 use common::scans::{Random, Truth, measure, paper_grid};
 use ndarray::Array2;
 
 const FIXED: Reference = Reference::FixedGeometry { theta_i_deg: 0.0, theta_v_deg: 45.0 };
 
 fn document(grid: &[Geometry], values: Vec<f64>, sigma: Option<Vec<f64>>, reference: Reference) -> Document {
-    let shape = (grid.len(), 1);
-    let mut quantity = Quantity::unstated(QuantityKind::BandRadianceFactor);
-    quantity.reference = reference;
-    let acquisitions = grid.iter().zip(0..).map(|(g, order)| Acquisition::at(Some(*g), order)).collect();
-    let values = Array2::from_shape_vec(shape, values).unwrap();
-    let emission = EmissionAxis::Band { band: None };
-    let standard = sigma.map(|sigma| Array2::from_shape_vec(shape, sigma).unwrap());
-    let measurement = Measurement {
-        uncertainty: Uncertainty {
-            standard: standard.map(|standard| standard.into_shared()),
-            ..Uncertainty::default()
-        },
-        ..Measurement::new(Id::new("scan").unwrap(), Role::Sample, quantity, emission, acquisitions, values)
-    };
-    Document { measurements: vec![measurement], ..Document::default() }
+    let column = |values: Vec<f64>| Array2::from_shape_vec((grid.len(), 1), values).unwrap();
+    scan_document(grid, reference, column(values), sigma.map(column))
 }
 
 fn fit(document: &Document, options: &FitOptions) -> Result<Model, FitError> {
@@ -295,4 +282,19 @@ fn a_term_is_named_once() {
     let terms = vec![TermKind::Lambertian, TermKind::Lambertian];
     let error = fit(&document, &FitOptions { terms, ..FitOptions::default() }).unwrap_err();
     assert_eq!(error, FitError::SameTermTwice(TermKind::Lambertian));
+}
+
+/// What was measured more than once scatters by what it scatters by, whatever is stated.
+#[test]
+fn repeats_that_scatter_more_than_is_stated_are_said() {
+    let grid = [paper_grid(), paper_grid()[..60].to_vec()].concat();
+    let (values, sigma) = measure(&paper_sphere(), &grid, 0.01, &mut Random::new(5));
+    let said = |of_stated: f64| {
+        let stated = sigma.iter().map(|sigma| of_stated * sigma).collect();
+        let model = fit(&document(&grid, values.clone(), Some(stated), FIXED), &FitOptions::default()).unwrap();
+        model.identifiability.iter().find(|sentence| sentence.contains("more than once")).cloned()
+    };
+    assert_eq!((said(1.0), said(2.0)), (None, None));
+    let sentence = said(0.5).unwrap();
+    assert!(sentence.contains("60 geometries") && sentence.contains("too small"), "{sentence}");
 }

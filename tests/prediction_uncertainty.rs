@@ -2,6 +2,7 @@
 #![allow(unreachable_pub, clippy::unwrap_used)]
 
 mod common {
+    pub mod documents;
     pub mod scans;
 }
 
@@ -9,14 +10,11 @@ use std::path::Path;
 
 use assert_cmd::Command;
 use bbrf::container::write_file;
-use bbrf::dataset::{Acquisition, Document, Id, Measurement, Model, Role, predict};
+use bbrf::dataset::{Document, Model, predict};
 use bbrf::fit::{FitOptions, fit_measurement};
-use bbrf::quantity::{
-    Bandpass, Component, CorrelatedOver, EmissionAxis, Geometry, Quantity, QuantityKind, Reference, SignHabit,
-    Uncertainty, WavelengthAxis,
-};
-use common::scans::{Random, Truth, measure, paper_grid};
-use ndarray::{Array2, ArrayView1};
+use bbrf::quantity::{Component, CorrelatedOver, Geometry, Reference, SignHabit};
+use common::documents::measured_document;
+use common::scans::{Random, Truth, paper_grid};
 
 const TRUTH: Truth = Truth { albedo: 0.5, intensity: 20.0, roughness: 0.15, index_minus_one: 0.5 };
 
@@ -25,31 +23,11 @@ fn in_plane(theta_i: f64, theta_v: f64) -> Geometry {
 }
 
 fn document(grid: &[Geometry], bands: usize, random: &mut Random) -> Document {
-    let shape = (grid.len(), bands);
-    let (mut values, mut sigma) = (Array2::zeros(shape), Array2::zeros(shape));
-    for band in 0..bands {
-        let (measured, uncertain) = measure(&TRUTH, grid, 0.01, random);
-        values.column_mut(band).assign(&ArrayView1::from(&measured));
-        sigma.column_mut(band).assign(&ArrayView1::from(&uncertain));
-    }
-    let kind = if bands > 1 { QuantityKind::RadianceFactor } else { QuantityKind::BandRadianceFactor };
-    let mut quantity = Quantity::unstated(kind);
-    quantity.reference = Reference::FixedGeometry { theta_i_deg: 0.0, theta_v_deg: 45.0 };
-    let nm = (0..bands).map(|band| 500.0 + 10.0 * band as f64).collect();
-    let emission = match bands {
-        1 => EmissionAxis::Band { band: None },
-        _ => EmissionAxis::Wavelengths(WavelengthAxis::new(nm, Bandpass::Unstated).unwrap()),
-    };
-    let acquisitions = grid.iter().zip(0..).map(|(g, order)| Acquisition::at(Some(*g), order)).collect();
-    let measurement = Measurement {
-        uncertainty: Uncertainty {
-            standard: Some(sigma.into_shared()),
-            components: vec![Component::new("certified factor", vec![0.005], CorrelatedOver::All)],
-            ..Uncertainty::default()
-        },
-        ..Measurement::new(Id::new("scan").unwrap(), Role::Sample, quantity, emission, acquisitions, values)
-    };
-    Document { measurements: vec![measurement], ..Document::default() }
+    let fixed = Reference::FixedGeometry { theta_i_deg: 0.0, theta_v_deg: 45.0 };
+    let mut document = measured_document(grid, fixed, &vec![TRUTH; bands], 0.01, random);
+    document.measurements[0].uncertainty.components =
+        vec![Component::new("certified factor", vec![0.005], CorrelatedOver::All)];
+    document
 }
 
 fn fitted(document: &Document, options: &FitOptions) -> Model {

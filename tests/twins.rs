@@ -2,15 +2,16 @@
 #![allow(unreachable_pub, clippy::unwrap_used)]
 
 mod common {
+    pub mod documents;
     pub mod scans;
 }
 
-use bbrf::dataset::{Acquisition, Document, Id, Measurement, Model, NoTwin, Role, predict, with_distribution};
+use bbrf::dataset::{Document, Model, NoTwin, predict, with_distribution};
 use bbrf::fit::{FitOptions, fit_measurement};
-use bbrf::quantity::{Bandpass, EmissionAxis, Quantity, QuantityKind, Reference, Uncertainty, WavelengthAxis};
+use bbrf::quantity::Reference;
 use bbrf::terms::{Distribution, INTENSITY, ROUGHNESS};
+use common::documents::measured_document;
 use common::scans::{Random, Truth, measure, paper_grid};
-use ndarray::Array2;
 
 const GAUSSIANS: [Distribution; 4] = [
     Distribution::GaussianHalfHeight,
@@ -20,26 +21,8 @@ const GAUSSIANS: [Distribution; 4] = [
 ];
 
 fn document(bands: usize) -> Document {
-    let grid = paper_grid();
-    let mut random = Random::new(7);
     let truth = Truth { albedo: 0.6, intensity: 8.0, roughness: 0.2, index_minus_one: 0.5 };
-    let columns: Vec<(Vec<f64>, Vec<f64>)> = (0..bands).map(|_| measure(&truth, &grid, 0.01, &mut random)).collect();
-    let values = Array2::from_shape_fn((grid.len(), bands), |(row, band)| columns[band].0[row]);
-    let sigma = Array2::from_shape_fn((grid.len(), bands), |(row, band)| columns[band].1[row]);
-    let kind = if bands == 1 { QuantityKind::BandRadianceFactor } else { QuantityKind::RadianceFactor };
-    let mut quantity = Quantity::unstated(kind);
-    quantity.reference = Reference::None;
-    let emission = if bands == 1 {
-        EmissionAxis::Band { band: None }
-    } else {
-        let nm = (0..bands).map(|band| 500.0 + 10.0 * band as f64).collect();
-        EmissionAxis::Wavelengths(WavelengthAxis::new(nm, Bandpass::Unstated).unwrap())
-    };
-    let acquisitions = grid.iter().zip(0..).map(|(geometry, order)| Acquisition::at(Some(*geometry), order)).collect();
-    let mut measurement =
-        Measurement::new(Id::new("scan").unwrap(), Role::Sample, quantity, emission, acquisitions, values);
-    measurement.uncertainty = Uncertainty { standard: Some(sigma.into_shared()), ..Uncertainty::default() };
-    Document { measurements: vec![measurement], ..Document::default() }
+    measured_document(&paper_grid(), Reference::None, &vec![truth; bands], 0.01, &mut Random::new(7))
 }
 
 fn fit(document: &Document, distribution: Distribution) -> Model {
@@ -128,4 +111,46 @@ fn what_the_file_does_not_hold_is_unknown_and_said() {
     assert!(sigma(&normalised, INTENSITY.name).iter().all(|sigma| sigma.is_nan()));
     assert!(sigma(&normalised, ROUGHNESS.name)[0] > 0.0);
     assert!(normalised.identifiability.iter().any(|sentence| sentence.contains("are not known here")));
+}
+
+/// Of an interval the ends of a width move with it; those of an amplitude under another norm are no interval of its own.
+#[test]
+fn an_interval_goes_with_its_number_or_is_gone() {
+    let model = fit(&document(1), Distribution::GaussianHalfHeight);
+    let wide = with_distribution(&model, Distribution::Gaussian).unwrap();
+    let normalised = with_distribution(&model, Distribution::GaussianNormalised).unwrap();
+    let refitted = fit(&document(1), Distribution::Gaussian);
+    let [asked, found] = [&refitted, &wide].map(|model| model.terms[1].parameters.clone());
+    for (one, other) in found.iter().zip(&asked) {
+        let width = other.interval_high[0] - other.interval_low[0];
+        assert!((one.interval_low[0] - other.interval_low[0]).abs() < 2e-3 * width, "{one:?} {other:?}");
+        assert!((one.interval_high[0] - other.interval_high[0]).abs() < 2e-3 * width, "{one:?} {other:?}");
+    }
+    for parameter in &normalised.terms[1].parameters {
+        assert_eq!(parameter.interval_low.is_empty(), parameter.name == INTENSITY.name, "{parameter:?}");
+    }
+}
+
+/// With everything for each wavelength each has its own norm; one where no specular term was seen stays without.
+#[test]
+fn every_wavelength_is_converted_by_its_own_roughness() {
+    let mut document = document(3);
+    let diffuse = Truth { albedo: 0.6, intensity: 0.0, roughness: 0.2, index_minus_one: 0.5 };
+    let (values, sigma) = measure(&diffuse, &paper_grid(), 0.01, &mut Random::new(3));
+    document.measurements[0].values.column_mut(1).assign(&ndarray::aview1(&values));
+    let mut all = document.measurements[0].uncertainty.standard.take().unwrap();
+    all.column_mut(1).assign(&ndarray::aview1(&sigma));
+    document.measurements[0].uncertainty.standard = Some(all);
+    let options = FitOptions { reduction: "none".parse().unwrap(), share: None, ..FitOptions::default() };
+    let model = fit_measurement(&document, &document.measurements[0], &options).unwrap();
+    let twin = with_distribution(&model, Distribution::GaussianNormalised).unwrap();
+    for emission in 0..3 {
+        assert_eq!(twin.terms[1].is_seen_at(emission), emission != 1, "{:?}", twin.terms[1]);
+        for geometry in paper_grid() {
+            let value = |model: &Model| {
+                predict(&model.terms_at(emission).unwrap(), &geometry, &Reference::None).unwrap().total()
+            };
+            assert!((value(&twin) / value(&model) - 1.0).abs() < 1e-12, "{emission}");
+        }
+    }
 }

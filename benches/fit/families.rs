@@ -14,7 +14,9 @@ const STARTS: usize = 30;
 pub fn run() {
     let count = trials(1000);
     println!("{count} scans each; gap to the best of the truth and {STARTS} random starts, in units of chi2/dof");
-    for (number, family) in Family::all().into_iter().enumerate() {
+    // `BBRF_FAMILY` picks those with these letters in their name.
+    let asked = std::env::var("BBRF_FAMILY").unwrap_or_default();
+    for (number, family) in Family::all().into_iter().enumerate().filter(|(_, family)| family.name.contains(&asked)) {
         let (set, prepared) = (tables(&family.grid), prepare(&family.grid));
         let outcomes: Vec<([f64; 2], bool, f64)> = (0..count)
             .into_par_iter()

@@ -126,7 +126,6 @@ pub fn diagnose_measurement(
     let terms = Terms { specular: choice.terms().specular && fits.has_specular(), ..choice.terms() };
     let sigma = data.sigma.as_ref().map(|sigma| sigma.view());
     let diagnosis = Fitter::new(&set, terms).diagnose(data.values.view(), sigma, PROBABILITY).map_err(data_error)?;
-    let repeats =
-        data.sigma.as_ref().and_then(|sigma| Repeats::of(&data.geometry, &data.values, sigma, &diagnosis.residual));
+    let repeats = data.sigma.as_ref().and_then(|sigma| Repeats::of(&data.geometry, &data.values, sigma));
     Ok(MeasurementDiagnosis { data, diagnosis, repeats })
 }

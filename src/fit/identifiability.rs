@@ -7,6 +7,7 @@ use super::left_out::LeftOut;
 use super::observed::Observed;
 use super::outcome::Fit;
 use super::profile::Interval;
+use super::repeats::{Repeats, Verdict};
 use super::solve::{SEEN, Terms};
 use crate::dataset::{Reduced, Side};
 
@@ -35,6 +36,7 @@ pub(super) fn findings(
                 .to_owned(),
         );
     }
+    list.extend(repeats(data));
     list.extend(bounds(data));
     list.extend(outliers(fits));
     list.extend(fits.effects.iter().map(effect));
@@ -49,6 +51,21 @@ pub(super) fn findings(
         many => list.extend(of_many(many, data, terms, has_sigma)),
     }
     list
+}
+
+/// Geometries that were measured more than once and scatter by more than is stated. Less is no finding: the stated
+/// uncertainty may hold what repeats together.
+fn repeats(data: &Reduced) -> Option<String> {
+    let repeats = Repeats::of(&data.geometry, &data.values, data.sigma.as_ref()?)?;
+    (repeats.verdict() == Verdict::TooSmall).then(|| {
+        format!(
+            "{} geometries were measured more than once, and their values scatter by {:.2} +- {:.2} times the stated \
+             uncertainties: those are too small, and so are the uncertainties of the parameters",
+            repeats.geometries.len(),
+            repeats.scatter,
+            repeats.scatter_uncertainty()
+        )
+    })
 }
 
 /// Readings that were fitted as bounds.

@@ -63,6 +63,6 @@ pub use observed::{Observations, Observed};
 pub use options::{FitError, FitOptions};
 pub use outcome::{BandFit, Fit, Stop};
 pub use profile::{Interval, Intervals, ProfileCurve, Profiled};
-pub use repeats::{Repeated, Repeats};
+pub use repeats::{Repeated, Repeats, Verdict};
 pub use separability::{NotSeparable, separability};
 pub use solve::{Fitter, Terms};

@@ -25,19 +25,42 @@ pub struct Repeats {
     /// Standard deviation of the values about the mean of their geometry, in units of the stated uncertainties; 1 where
     /// those are right.
     pub scatter: f64,
-    /// How many values beyond the first of each geometry: the scatter itself is known to 1/sqrt(2 x this).
+    /// How many values beyond the first of each geometry.
     pub degrees_of_freedom: usize,
 }
 
+/// What repeats say of the stated uncertainties.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Verdict {
+    /// The values scatter more than is stated.
+    TooSmall,
+    /// The values scatter less.
+    Larger,
+    /// Neither is shown.
+    Agrees,
+}
+
 impl Repeats {
-    /// Groups rows of one geometry. Tables are \[B, N\], and `used` is finite where a value took part in the fit. `None`
+    /// Standard uncertainty of the scatter: that of a standard deviation from normal errors, scatter/sqrt(2 nu) (GUM E.4.3).
+    #[must_use]
+    pub fn scatter_uncertainty(&self) -> f64 {
+        self.scatter / (2.0 * self.degrees_of_freedom as f64).sqrt()
+    }
+
+    /// What is shown by more than three of what a right statement would scatter by.
+    #[must_use]
+    pub fn verdict(&self) -> Verdict {
+        let by_chance = 3.0 / (2.0 * self.degrees_of_freedom as f64).sqrt();
+        match self.scatter {
+            scatter if scatter > 1.0 + by_chance => Verdict::TooSmall,
+            scatter if scatter < 1.0 - by_chance => Verdict::Larger,
+            _ => Verdict::Agrees,
+        }
+    }
+
+    /// Groups rows of one geometry: values and their uncertainties \[B, N\], of which those count that can be fitted. `None`
     /// where no geometry has two values.
-    pub(super) fn of(
-        geometry: &[Geometry],
-        values: &Array2<f64>,
-        sigma: &Array2<f64>,
-        used: &Array2<f64>,
-    ) -> Option<Self> {
+    pub(super) fn of(geometry: &[Geometry], values: &Array2<f64>, sigma: &Array2<f64>) -> Option<Self> {
         let key = |geometry: &Geometry| {
             let Geometry { incidence, viewing } = geometry;
             // Positive and negative zero are one angle.
@@ -53,7 +76,7 @@ impl Repeats {
         let (mut square, mut degrees_of_freedom) = (0.0, 0);
         let mut geometries = Vec::new();
         for rows in groups {
-            let (sum, freedom) = spread(&rows, values, sigma, used);
+            let (sum, freedom) = spread(&rows, values, sigma);
             if freedom > 0 {
                 square += sum;
                 degrees_of_freedom += freedom;
@@ -67,11 +90,12 @@ impl Repeats {
 }
 
 /// Sum of squares about the weighted mean of each emission value, and its degrees of freedom.
-fn spread(rows: &[usize], values: &Array2<f64>, sigma: &Array2<f64>, used: &Array2<f64>) -> (f64, usize) {
+fn spread(rows: &[usize], values: &Array2<f64>, sigma: &Array2<f64>) -> (f64, usize) {
     let (mut square, mut freedom) = (0.0, 0);
     for emission in 0..values.nrows() {
-        let places = rows.iter().map(|row| (emission, *row)).filter(|at| used[*at].is_finite());
-        let pairs: Vec<(f64, f64)> = places.map(|at| (values[at], sigma[at])).collect();
+        let both = rows.iter().map(|row| (values[(emission, *row)], sigma[(emission, *row)]));
+        let pairs: Vec<(f64, f64)> =
+            both.filter(|(value, sigma)| value.is_finite() && sigma.is_finite() && *sigma > 0.0).collect();
         if pairs.len() > 1 {
             let weight: f64 = pairs.iter().map(|(_, sigma)| sigma.powi(-2)).sum();
             let mean = pairs.iter().map(|(value, sigma)| value * sigma.powi(-2)).sum::<f64>() / weight;

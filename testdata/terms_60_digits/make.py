@@ -136,7 +136,7 @@ def roughness(rng, name, phi_deg):
 
 
 def main():
-    seed, count = (int(sys.argv[1]), int(sys.argv[2])) if len(sys.argv) > 2 else (20260101, 3000)
+    seed, count = (int(sys.argv[1]), int(sys.argv[2])) if len(sys.argv) > 2 else (20260101, 2700)
     rng = random.Random(seed)
     print("# Right to 60 digits, printed to 18; made by make.py")
     print(HEADER)

@@ -2,7 +2,7 @@
 
 use super::Shown;
 use crate::dataset::{Document, FittedTerm, Model};
-use crate::fit::{Interval, MeasurementDiagnosis};
+use crate::fit::{Interval, MeasurementDiagnosis, Verdict};
 use crate::report::html::{Html, number, value_and_uncertainty};
 use crate::report::page::{head, write_drawn};
 use crate::terms::TermKind;
@@ -124,11 +124,10 @@ fn write_repeats(html: &mut Html, shown: &Shown<'_>) {
         html.text("p", why);
         return;
     };
-    let uncertain = (2.0 * repeats.degrees_of_freedom as f64).sqrt().recip();
-    let verdict = match repeats.scatter {
-        scatter if scatter > 1.0 + 3.0 * uncertain => "the stated uncertainties are too small for what repeats",
-        scatter if scatter < 1.0 - 3.0 * uncertain => "the stated uncertainties are larger than what repeats shows",
-        _ => "in agreement",
+    let verdict = match repeats.verdict() {
+        Verdict::TooSmall => "the stated uncertainties are too small for what repeats",
+        Verdict::Larger => "the stated uncertainties are larger than what repeats shows",
+        Verdict::Agrees => "in agreement",
     };
     html.text(
         "p",
@@ -137,7 +136,7 @@ fn write_repeats(html: &mut Html, shown: &Shown<'_>) {
              {:.2}, from {} degrees of freedom): {verdict}.",
             repeats.geometries.len(),
             repeats.scatter,
-            uncertain * repeats.scatter,
+            repeats.scatter_uncertainty(),
             repeats.degrees_of_freedom
         ),
     );

@@ -189,10 +189,10 @@ impl DesignResult {
             lines.push("  (percent of the value, of the refractive index: of n - 1)".to_owned());
         }
         if self.planned > 0 {
-            lines.extend(self.undetermined.iter().map(|sentence| format!("  undetermined: {sentence}")));
+            lines.extend(self.undetermined.iter().map(|sentence| format!("  as planned: {sentence}")));
         }
         if !self.added.is_empty() {
-            lines.extend(self.undetermined_after.iter().map(|sentence| format!("  still undetermined: {sentence}")));
+            lines.extend(self.undetermined_after.iter().map(|sentence| format!("  with those added: {sentence}")));
             lines.push(self.heading());
         }
         lines.extend(self.added.iter().enumerate().map(|(k, one)| self.added_line(k, one)));
