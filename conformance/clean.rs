@@ -5,7 +5,7 @@ use bbrf::dataset::tree::{Array, Data, Dataset, Group};
 use bbrf::dataset::*;
 use bbrf::quantity::*;
 use bbrf::terms::{Denominator, Distribution, TermKind};
-use ndarray::Array2;
+use ndarray::{Array2, Array3};
 
 pub fn id(text: &str) -> Id {
     Id::new(text).expect("an identifier")
@@ -322,9 +322,9 @@ fn model(document: &Document) -> Model {
     let data = reduce(document, scan, reduction).expect("a scan that can be reduced");
     let variance = |k: usize| (TRUTH[k] / 1000.0).powi(2);
     let covariance =
-        Array2::from_shape_fn(
-            (4, 4),
-            |(i, j)| if i == j { variance(i) } else { 0.1 * (variance(i) * variance(j)).sqrt() },
+        Array3::from_shape_fn(
+            (1, 4, 4),
+            |(_, i, j)| if i == j { variance(i) } else { 0.1 * (variance(i) * variance(j)).sqrt() },
         );
     let names = [
         "lambertian.albedo",

@@ -368,9 +368,13 @@ pub const FAULTS: &[Fault] = &[
 
     d("model.data-changed", "a-value", |d| scan(d).values[[0, 0]] *= 1.0 + 1e-12),
     d("model.data-changed", "another-digest", |d| d.models[0].data_digest = format!("sha256:{}", "0".repeat(64))),
-    d("model.covariance-symmetric", "one-side", |d| d.models[0].covariance[[0, 1]] *= 2.0),
-    d("model.covariance-diagonal", "negative", |d| d.models[0].covariance[[0, 0]] = -1e-6),
+    d("model.covariance-symmetric", "one-side", |d| d.models[0].covariance[[0, 0, 1]] *= 2.0),
+    d("model.covariance-diagonal", "negative", |d| d.models[0].covariance[[0, 0, 0]] = -1e-6),
     d("model.covariance-parameters", "one-name-less", |d| drop(d.models[0].covariance_parameters.pop())),
+    d("model.covariance-parameters", "a-table-too-many", |d| {
+        let table = d.models[0].covariance.clone();
+        d.models[0].covariance = ndarray::concatenate![ndarray::Axis(0), table, table].into_shared();
+    }),
     d("model.parameter-bounds", "negative-roughness", |d| d.models[0].terms[1].parameters[1].value = vec![-0.05]),
     d("model.parameter-bounds", "index-below-one", |d| d.models[0].terms[1].parameters[2].value = vec![0.9]),
     d("model.not-converged", "said", |d| d.models[0].converged = false),
@@ -385,8 +389,8 @@ pub const FAULTS: &[Fault] = &[
     d("model.uncertainty", "negative", |d| d.models[0].terms[0].parameters[0].standard_uncertainty = vec![-1.0]),
     d("model.uncertainty", "none", |d| d.models[0].terms[0].parameters[0].standard_uncertainty.clear()),
     d("model.correlation", "beyond-one", |d| {
-        d.models[0].covariance[[0, 1]] *= 100.0;
-        d.models[0].covariance[[1, 0]] *= 100.0;
+        d.models[0].covariance[[0, 0, 1]] *= 100.0;
+        d.models[0].covariance[[0, 1, 0]] *= 100.0;
     }),
     d("model.covariance-names", "twice", |d| {
         let names = &mut d.models[0].covariance_parameters;

@@ -59,7 +59,7 @@ fn the_main_job_from_raw_records_to_a_valid_fitted_file() {
         assert!((value - expected).abs() < 3.0 * sigma, "{name}: {value}, expected {expected} +- {sigma}");
         assert!(parameter["unit"].is_string());
     }
-    assert_eq!(model["covariance"]["matrix"].as_array().unwrap().len(), 4);
+    assert_eq!(model["covariance"]["matrices"][0].as_array().unwrap().len(), 4);
     let report = json(bbrf().args(["validate", "--output", "json"]).arg(&file), "validate");
     assert!(report.to_string().contains("wavelength.bandpass-unstated"), "what is unstated is a warning: {report}");
     json(bbrf().args(["info", "--json"]).arg(&file), "info");

@@ -48,7 +48,7 @@ fn a_model_holds_everything_that_is_needed_to_check_it() {
     assert_eq!(model.covariance_parameters, names);
     let specular = &model.terms[1];
     for (k, parameter) in specular.parameters.iter().enumerate() {
-        let variance = model.covariance[(k + 1, k + 1)];
+        let variance = model.covariance[(0, k + 1, k + 1)];
         assert_eq!(parameter.standard_uncertainty[0], variance.sqrt(), "{}", parameter.name);
         let truth = [30.0, 0.05, 1.45][k];
         let off = (parameter.value[0] - truth) / parameter.standard_uncertainty[0];

@@ -11,10 +11,11 @@ use std::path::Path;
 use assert_cmd::Command;
 use bbrf::container::write_file;
 use bbrf::dataset::{Document, Model, predict};
-use bbrf::fit::{FitOptions, fit_measurement};
+use bbrf::fit::{FitOptions, Share, fit_measurement};
 use bbrf::quantity::{Component, CorrelatedOver, Geometry, Reference, SignHabit};
 use common::documents::measured_document;
 use common::scans::{Random, Truth, paper_grid};
+use ndarray::Axis;
 
 const TRUTH: Truth = Truth { albedo: 0.5, intensity: 20.0, roughness: 0.15, index_minus_one: 0.5 };
 
@@ -34,6 +35,7 @@ fn fitted(document: &Document, options: &FitOptions) -> Model {
     fit_measurement(document, &document.measurements[0], options).unwrap()
 }
 
+/// Of one value, and at the middle one of three wavelengths with roughness and index in common, or with nothing.
 #[test]
 fn the_uncertainty_of_a_prediction_is_the_scatter_of_predictions_over_refits() {
     let grid = paper_grid();
@@ -41,24 +43,28 @@ fn the_uncertainty_of_a_prediction_is_the_scatter_of_predictions_over_refits() {
     let at =
         [in_plane(0.0, 45.0), in_plane(30.0, 30.0), in_plane(75.0, 75.0), in_plane(20.0, 35.0), in_plane(85.0, 60.0)];
     let trials = 400;
-    let (mut found, mut claims): ([Vec<f64>; 5], [f64; 5]) = Default::default();
-    for _ in 0..trials {
-        let model = fitted(&document(&grid, 1, &mut random), &FitOptions::default());
-        let terms = model.terms_at(0).unwrap();
-        for (k, geometry) in at.iter().enumerate() {
-            found[k].push(predict(&terms, geometry, &Reference::None).unwrap().total());
-            let uncertainty = model.prediction_uncertainty(0, geometry, &Reference::None).unwrap();
-            claims[k] += uncertainty.standard.unwrap().powi(2);
-            assert!((uncertainty.shared_relative.unwrap() - 0.005).abs() < 1e-12, "{uncertainty:?}");
+    for (bands, share) in [(1, Some(Share::Shape)), (3, Some(Share::Shape)), (3, None)] {
+        let reduction = if bands > 1 { "none" } else { "auto" }.parse().unwrap();
+        let options = FitOptions { reduction, share, ..FitOptions::default() };
+        let (mut found, mut claims): ([Vec<f64>; 5], [f64; 5]) = Default::default();
+        for _ in 0..trials {
+            let model = fitted(&document(&grid, bands, &mut random), &options);
+            let terms = model.terms_at(bands / 2).unwrap();
+            for (k, geometry) in at.iter().enumerate() {
+                found[k].push(predict(&terms, geometry, &Reference::None).unwrap().total());
+                let uncertainty = model.prediction_uncertainty(bands / 2, geometry, &Reference::None).unwrap();
+                claims[k] += uncertainty.standard.unwrap().powi(2);
+                assert!((uncertainty.shared_relative.unwrap() - 0.005).abs() < 1e-12, "{uncertainty:?}");
+            }
         }
-    }
-    for (k, list) in found.iter().enumerate() {
-        let mean = list.iter().sum::<f64>() / f64::from(trials);
-        let scatter = (list.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / f64::from(trials - 1)).sqrt();
-        let ratio = (claims[k] / f64::from(trials)).sqrt() / scatter;
-        println!("{:?}: scatter {scatter:.3e}, claimed over it {ratio:.3}", at[k].signed_deg());
-        // The scatter of 400 is itself known to 3.5 %.
-        assert!((ratio - 1.0).abs() < 4.0 * 0.0354, "{k}: {ratio}");
+        for (k, list) in found.iter().enumerate() {
+            let mean = list.iter().sum::<f64>() / f64::from(trials);
+            let scatter = (list.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / f64::from(trials - 1)).sqrt();
+            let ratio = (claims[k] / f64::from(trials)).sqrt() / scatter;
+            println!("{bands} {share:?}, {:?}: scatter {scatter:.3e}, claimed over it {ratio:.3}", at[k].signed_deg());
+            // The scatter of 400 is itself known to 3.5 %.
+            assert!((ratio - 1.0).abs() < 4.0 * 0.0354, "{bands} {share:?}, {k}: {ratio}");
+        }
     }
 }
 
@@ -122,12 +128,22 @@ fn eval_prints_the_uncertainty_beside_the_value() {
     assert!(!json.contains("uncertainty"));
 }
 
-/// The file of a spectral fit holds the covariance of roughness and index, and each amplitude's own uncertainty: a band of
-/// these alone would be too wide or too narrow, nobody knows by how much.
 #[test]
-fn a_spectral_model_has_no_band_and_it_is_said_which_covariance_is_missing() {
-    let (_folder, file, geometry, _) = folder(3);
+fn every_wavelength_of_a_spectral_model_has_its_band_and_what_is_missing_is_named() {
+    let (_folder, file, geometry, model) = folder(3);
     let (out, err) = eval(&file, &geometry, &["--uncertainty"]);
+    assert!(out.lines().skip(1).all(|line| line.split(',').nth(6).unwrap().parse::<f64>().unwrap() > 0.0), "{out}");
+    assert_eq!(err, "");
+    let folder = tempfile::tempdir().unwrap();
+    let lacking = folder.path().join("lacking.bbrf");
+    let mut document = document(&paper_grid(), 3, &mut Random::new(53));
+    // As another program may write it: of the amplitudes the variance alone.
+    let common: Vec<usize> = [2, 3].to_vec();
+    let covariance = model.covariance.select(Axis(1), &common).select(Axis(2), &common).into_shared();
+    let covariance_parameters = model.covariance_parameters[2..].to_vec();
+    document.models.push(Model { covariance, covariance_parameters, ..model });
+    write_file(&document, &lacking).unwrap();
+    let (out, err) = eval(&lacking.display().to_string(), &geometry, &["--uncertainty"]);
     assert!(out.lines().skip(1).all(|line| line.split(',').nth(6) == Some("")), "{out}");
     assert!(err.contains("6 values have no standard uncertainty"), "{err}");
     assert!(err.contains("`lambertian.albedo` with `torrance-sparrow.roughness`"), "{err}");

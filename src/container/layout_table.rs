@@ -88,7 +88,7 @@ pub(super) const TABLE: &[Entry] = &[
     a("/model/*@residual_reduced_chi_square", "float64", "1", "weighted sum of squares over degrees of freedom"),
     a("/model/*@residual_count", "uint64", "1", "number of values fitted"),
     a("/model/*@residual_left_out", "uint64", "1", "number of values left out"),
-    d("/model/*/covariance", "float64", "*", "covariance of the parameters"),
+    d("/model/*/covariance", "float64", "*", "covariance of the parameters: one table, or one per emission value"),
     d("/model/*/covariance_row", "int32", "1", "number of the parameter; dimension scale"),
     d("/model/*/covariance_column", "int32", "1", "number of the parameter; dimension scale"),
     d("/model/*/covariance_parameters", "string", "", "names of the parameters, as TERM.PARAMETER, or TERM:POSITION.PARAMETER where several terms are of one kind"),

@@ -1,10 +1,10 @@
 //! Fitted models: terms, parameters with covariance, what they were fitted to and how.
 
-use ndarray::ArcArray2;
+use ndarray::{ArcArray, ArrayView2, Axis, Ix3};
 use serde::{Deserialize, Serialize};
 
 use super::Id;
-use crate::quantity::{EmissionAxis, Reference, rows_plain};
+use crate::quantity::{EmissionAxis, Reference, tables_plain};
 use crate::terms::{Denominator, Distribution, TermKind};
 
 /// A fitted parameter: one number, or one per emission value (an amplitude of a spectral fit).
@@ -132,10 +132,11 @@ pub struct Model {
     /// Names of the parameters in the order of the covariance, as [`Model::covariance_name`] gives them: `TERM.PARAMETER`,
     /// or `TERM:POSITION.PARAMETER` where several terms are of one kind.
     pub covariance_parameters: Vec<String>,
-    /// Covariance of these parameters; NaN where the data cannot tell.
-    #[serde(with = "rows_plain")]
-    #[schemars(with = "Vec<Vec<Option<f64>>>")]
-    pub covariance: ArcArray2<f64>,
+    /// Covariance of these parameters, one table or one per emission value \[1 or emission, parameter, parameter\]; NaN where
+    /// the data cannot tell.
+    #[serde(with = "tables_plain")]
+    #[schemars(with = "Vec<Vec<Vec<Option<f64>>>>")]
+    pub covariance: ArcArray<f64, Ix3>,
     /// Residuals.
     pub residuals: Residuals,
     /// True when the fit ended at a minimum and not at a limit.
@@ -155,6 +156,14 @@ impl Model {
     #[must_use]
     pub fn fitted_parameters(&self) -> usize {
         self.terms.iter().flat_map(|term| &term.parameters).map(|parameter| parameter.value.len()).sum()
+    }
+
+    /// Covariance of `covariance_parameters` at one emission value; none where the model has none for it.
+    #[must_use]
+    pub fn covariance_at(&self, emission: usize) -> Option<ArrayView2<'_, f64>> {
+        let tables = self.covariance.len_of(Axis(0));
+        let table = if tables == 1 { 0 } else { emission };
+        (table < tables).then(|| self.covariance.index_axis(Axis(0), table))
     }
 
     /// The name of a parameter of the term at a position in `covariance_parameters`: `TERM.PARAMETER`, and where the

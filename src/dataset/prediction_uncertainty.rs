@@ -126,8 +126,7 @@ impl ParameterCovariance {
 
 impl Model {
     /// The covariance of the parameters at one emission value, as far as the model holds it: what is stored, and on the
-    /// diagonal the standard uncertainties of parameters that it does not name. A model of many emission values stores the
-    /// covariance of what they have in common, not that of an amplitude with it.
+    /// diagonal the standard uncertainties of parameters that it does not name.
     #[must_use]
     pub fn parameter_covariance(&self, emission: usize) -> ParameterCovariance {
         let kinds: Vec<TermKind> = self.terms.iter().map(|term| term.kind).collect();
@@ -148,7 +147,8 @@ impl Model {
             has_shared |= shared.is_some();
             shared_relative.push(shared.unwrap_or(0.0));
         }
-        let stored = |i: usize, j: usize| self.covariance.get((i, j)).copied().unwrap_or(f64::NAN);
+        let covariance = self.covariance_at(emission);
+        let stored = |i: usize, j: usize| covariance.and_then(|all| all.get((i, j)).copied()).unwrap_or(f64::NAN);
         // The terms of a prediction are those that were seen, and stand in the order of these.
         let seen = |position: &usize| self.terms[*position].is_seen_at(emission);
         let positions: Vec<usize> = (0..self.terms.len()).filter(seen).collect();

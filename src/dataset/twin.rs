@@ -4,9 +4,9 @@
 //! r' = k r, and c_s' = c_s N' / N, where N is 1 for a form without a norm. The Jacobian follows exactly, with
 //! L = d(ln N'/N)/d(ln w): dc'/dc = N'/N, dc'/dr = c' L / r, dr'/dr = k.
 
-use ndarray::Array2;
+use ndarray::{Array2, ArrayView2, Axis};
 
-use super::{FittedParameter, FittedTerm, Id, Model};
+use super::{FittedTerm, Id, Model};
 use crate::terms::{Distribution, INTENSITY, ROUGHNESS, TermKind, gaussian_integral};
 
 /// Why a model has no exact twin.
@@ -72,37 +72,38 @@ impl Change {
 
 /// The model with every specular term in another form of the same function, with its covariance, under an id of its own.
 ///
-/// Predictions and residuals stay. Where the norm changes, the intensity has no interval any more. Where amplitudes of several emission values were fitted, a file does not hold their
-/// covariance with the roughness; then, if the norm changes, their standard uncertainties are not known and are NaN.
+/// Predictions and residuals stay. Where the norm changes, the intensity has no interval any more; and no standard
+/// uncertainty where the model does not hold its covariance with the roughness, on which the norm depends.
 ///
 /// # Errors
 /// [`NoTwin`] where the form asked for is another function, or there is nothing to convert.
 pub fn with_distribution(model: &Model, into: Distribution) -> Result<Model, NoTwin> {
-    let mut terms = model.terms.clone();
-    let count = model.covariance_parameters.len();
-    let mut jacobian = Array2::<f64>::eye(count);
+    let mut twin = model.clone();
+    let emissions = model.covariance.len_of(Axis(0));
+    let mut jacobians = vec![Array2::<f64>::eye(model.covariance_parameters.len()); emissions];
     let (mut specular, mut lost, mut from) = (0, false, into);
-    for (position, term) in terms.iter_mut().enumerate().filter(|(_, term)| term.kind == TermKind::TorranceSparrow) {
+    let terms = twin.terms.iter_mut().enumerate();
+    for (position, term) in terms.filter(|(_, term)| term.kind == TermKind::TorranceSparrow) {
         specular += 1;
         let before = term.distribution.unwrap_or(Distribution::GaussianHalfHeight);
         from = if before == into { from } else { before };
         let changes = changes(term, before, into)?;
-        let index = |parameter: &str| {
+        convert_term(term, into, &changes);
+        let row = |parameter: &str| {
             let name = model.covariance_name(position, parameter);
             model.covariance_parameters.iter().position(|one| *one == name)
         };
-        let (c, r) = (index(INTENSITY.name), index(ROUGHNESS.name));
-        lost |= convert_term(term, into, &changes, c.zip(r).is_some())?;
-        // A covariance is that of one number each.
-        let [change, ..] = changes[..] else { return Err(NoTwin::Parameter(ROUGHNESS.name)) };
-        if let Some(r) = r {
-            jacobian[(r, r)] = change.roughness;
+        let (c, r) = (row(INTENSITY.name), row(ROUGHNESS.name));
+        for (emission, jacobian) in jacobians.iter_mut().enumerate() {
+            let change = of(&changes, emission).ok_or(NoTwin::Parameter(ROUGHNESS.name))?;
+            r.iter().for_each(|r| jacobian[(*r, *r)] = change.roughness);
+            c.iter().for_each(|c| jacobian[(*c, *c)] = change.intensity);
+            if let (Some(c), Some(r)) = (c, r) {
+                let intensity = term.parameter_at(INTENSITY.name, emission);
+                jacobian[(c, r)] = intensity.ok_or(NoTwin::Parameter(INTENSITY.name))? * change.by_roughness;
+            }
         }
-        if let Some(c) = c {
-            jacobian[(c, c)] = change.intensity;
-            let converted = term.parameter_at(INTENSITY.name, 0).ok_or(NoTwin::Parameter(INTENSITY.name))?;
-            r.iter().for_each(|r| jacobian[(c, *r)] = converted * change.by_roughness);
-        }
+        lost |= c.zip(r).is_none() && changes.iter().any(|change| change.by_roughness != 0.0);
     }
     if specular == 0 {
         return Err(NoTwin::NoSpecularTerm);
@@ -110,15 +111,13 @@ pub fn with_distribution(model: &Model, into: Distribution) -> Result<Model, NoT
     if from == into {
         return Err(NoTwin::Same(into));
     }
-    let covariance = propagated(&jacobian, model.covariance.view());
-    fill_uncertainties(&mut terms, model, &covariance);
-    let mut twin = Model {
-        id: Id::from_title(&format!("{}-{into}", model.id)),
-        terms,
-        covariance: covariance.into_shared(),
-        method: format!("{}; `{from}` converted exactly to `{into}` from model `{}`", model.method, model.id),
-        ..model.clone()
-    };
+    for (emission, jacobian) in jacobians.iter().enumerate() {
+        let converted = propagated(jacobian, model.covariance.index_axis(Axis(0), emission));
+        twin.covariance.index_axis_mut(Axis(0), emission).assign(&converted);
+    }
+    fill_uncertainties(&mut twin, lost);
+    twin.id = Id::from_title(&format!("{}-{into}", model.id));
+    twin.method = format!("{}; `{from}` converted exactly to `{into}` from model `{}`", model.method, model.id);
     twin.identifiability.push(format!(
         "converted exactly from model `{}` (distribution `{from}`): sentences that name a roughness or an intensity speak of \
          that model's",
@@ -126,71 +125,59 @@ pub fn with_distribution(model: &Model, into: Distribution) -> Result<Model, NoT
     ));
     if lost {
         twin.identifiability.push(
-            "the intensities of several wavelengths are stored without their covariance with the roughness, and the norm \
-             depends on it: their standard uncertainties are not known here"
+            "the model does not hold the covariance of its intensities with the roughness, and the norm depends on it: their \
+             standard uncertainties are not known here"
                 .to_owned(),
         );
     }
     Ok(twin)
 }
 
-/// How each value of a term changes: one change where one roughness serves all, else one for each emission value.
-fn changes(term: &FittedTerm, before: Distribution, into: Distribution) -> Result<Vec<Change>, NoTwin> {
-    let count = |name: &'static str| {
-        let parameter = term.parameters.iter().find(|one| one.name == name).ok_or(NoTwin::Parameter(name))?;
-        Ok(parameter.value.len())
-    };
-    let (roughnesses, intensities) = (count(ROUGHNESS.name)?, count(INTENSITY.name)?);
-    if roughnesses == 0 || (roughnesses > 1 && intensities != roughnesses) {
-        return Err(NoTwin::Parameter(ROUGHNESS.name));
-    }
-    let of = |emission: usize| {
-        let roughness = term.parameter_at(ROUGHNESS.name, emission).ok_or(NoTwin::Parameter(ROUGHNESS.name))?;
-        Change::new(before, into, roughness)
-    };
-    (0..roughnesses).map(of).collect()
+/// The one that serves all emission values, or that of one.
+fn of<T>(list: &[T], emission: usize) -> Option<&T> {
+    if list.len() == 1 { list.first() } else { list.get(emission) }
 }
 
-/// Converts the numbers of a term; true where uncertainties of its intensities are lost.
-fn convert_term(term: &mut FittedTerm, into: Distribution, changes: &[Change], tied: bool) -> Result<bool, NoTwin> {
+/// How each value of a term changes: one change where one roughness serves all, else one for each emission value.
+fn changes(term: &FittedTerm, before: Distribution, into: Distribution) -> Result<Vec<Change>, NoTwin> {
+    let missing = || NoTwin::Parameter(ROUGHNESS.name);
+    let roughness = term.parameters.iter().find(|one| one.name == ROUGHNESS.name).ok_or_else(missing)?;
+    let intensity = term.parameters.iter().find(|one| one.name == INTENSITY.name).ok_or_else(missing)?;
+    match (roughness.value.len(), intensity.value.len()) {
+        (1, _) => {}
+        (several, intensities) if several > 1 && several == intensities => {}
+        _ => return Err(missing()),
+    }
+    roughness.value.iter().map(|roughness| Change::new(before, into, *roughness)).collect()
+}
+
+/// Converts the numbers of a term.
+fn convert_term(term: &mut FittedTerm, into: Distribution, changes: &[Change]) {
     term.distribution = Some(into);
-    let find = |parameters: &mut Vec<FittedParameter>, name: &'static str| {
-        parameters.iter().position(|one| one.name == name).ok_or(NoTwin::Parameter(name))
-    };
     let scale = |values: &mut Vec<f64>, factor: fn(&Change) -> f64| {
-        let each = |k: usize| changes.get(k).or(changes.first()).map_or(f64::NAN, factor);
-        values.iter_mut().enumerate().for_each(|(k, value)| *value *= each(k));
+        values.iter_mut().enumerate().for_each(|(k, value)| *value *= of(changes, k).map_or(f64::NAN, factor));
     };
-    let roughness = find(&mut term.parameters, ROUGHNESS.name)?;
-    let roughness = &mut term.parameters[roughness];
-    for numbers in [
-        &mut roughness.value,
-        &mut roughness.standard_uncertainty,
-        &mut roughness.interval_low,
-        &mut roughness.interval_high,
-    ] {
-        scale(numbers, |change| change.roughness);
+    for parameter in &mut term.parameters {
+        if parameter.name == ROUGHNESS.name {
+            scale(&mut parameter.value, |change| change.roughness);
+            scale(&mut parameter.standard_uncertainty, |change| change.roughness);
+            scale(&mut parameter.interval_low, |change| change.roughness);
+            scale(&mut parameter.interval_high, |change| change.roughness);
+            into.roughness_unit().clone_into(&mut parameter.unit);
+        } else if parameter.name == INTENSITY.name {
+            scale(&mut parameter.value, |change| change.intensity);
+            scale(&mut parameter.standard_uncertainty, |change| change.intensity);
+            if changes.iter().any(|change| change.by_roughness != 0.0) {
+                // The profile of a product is not the product of a profile: only a new fit has it.
+                parameter.interval_low.clear();
+                parameter.interval_high.clear();
+            }
+        }
     }
-    roughness.unit = into.roughness_unit().to_owned();
-    let intensity = find(&mut term.parameters, INTENSITY.name)?;
-    let intensity = &mut term.parameters[intensity];
-    scale(&mut intensity.value, |change| change.intensity);
-    scale(&mut intensity.standard_uncertainty, |change| change.intensity);
-    let depends = changes.iter().any(|change| change.by_roughness != 0.0);
-    if depends {
-        // The profile of a product is not the product of a profile: only a new fit has it.
-        intensity.interval_low.clear();
-        intensity.interval_high.clear();
-    }
-    let lost = depends && !tied;
-    if lost {
-        intensity.standard_uncertainty.iter_mut().for_each(|sigma| *sigma = f64::NAN);
-    }
-    Ok(lost)
 }
 
 /// J C J^T, where an entry of J that is 0 hides an unknown of C.
-fn propagated(jacobian: &Array2<f64>, covariance: ndarray::ArrayView2<'_, f64>) -> Array2<f64> {
+fn propagated(jacobian: &Array2<f64>, covariance: ArrayView2<'_, f64>) -> Array2<f64> {
     let count = jacobian.nrows();
     let known = |a: f64, b: f64| if a == 0.0 { 0.0 } else { a * b };
     Array2::from_shape_fn((count, count), |(i, j)| {
@@ -199,13 +186,20 @@ fn propagated(jacobian: &Array2<f64>, covariance: ndarray::ArrayView2<'_, f64>) 
     })
 }
 
-/// The standard uncertainties of single intensities are those of the covariance.
-fn fill_uncertainties(terms: &mut [FittedTerm], model: &Model, covariance: &Array2<f64>) {
-    for (position, term) in terms.iter_mut().enumerate().filter(|(_, term)| term.kind == TermKind::TorranceSparrow) {
-        let name = model.covariance_name(position, INTENSITY.name);
-        let Some(k) = model.covariance_parameters.iter().position(|one| *one == name) else { continue };
+/// The standard uncertainties of the intensities are those of the covariance, or not known.
+fn fill_uncertainties(twin: &mut Model, lost: bool) {
+    let names: Vec<String> = (0..twin.terms.len()).map(|term| twin.covariance_name(term, INTENSITY.name)).collect();
+    let terms = twin.terms.iter_mut().zip(&names).filter(|(term, _)| term.kind == TermKind::TorranceSparrow);
+    for (term, name) in terms {
+        let row = twin.covariance_parameters.iter().position(|one| one == name);
         for parameter in term.parameters.iter_mut().filter(|one| one.name == INTENSITY.name) {
-            parameter.standard_uncertainty = vec![covariance[(k, k)].sqrt(); parameter.value.len()];
+            for (emission, sigma) in parameter.standard_uncertainty.iter_mut().enumerate() {
+                *sigma = match row.and_then(|row| twin.covariance.get((emission, row, row))) {
+                    _ if lost => f64::NAN,
+                    Some(variance) => variance.sqrt(),
+                    None => *sigma,
+                };
+            }
         }
     }
 }

@@ -1,6 +1,6 @@
 //! The fits of a measurement's emission values, together or each by itself, and what of them a model stores.
 
-use ndarray::{Array2, s};
+use ndarray::{Array3, s};
 use rayon::prelude::*;
 
 use super::curvature::Share;
@@ -237,22 +237,20 @@ impl Fits {
         }
     }
 
-    /// The covariance that is stored: of all parameters where there is one emission value, of the common ones where many
-    /// were fitted together; none of many fits.
-    pub(super) fn stored_covariance(&self, choice: Choice) -> (Vec<String>, Array2<f64>) {
+    /// The covariance that is stored: of all parameters, at each emission value \[emission, parameter, parameter\]. That
+    /// between two emission values is not: only what they have in common ties them.
+    pub(super) fn stored_covariance(&self, choice: Choice) -> (Vec<String>, Array3<f64>) {
         let name = |kind: TermKind, k: usize| format!("{}.{}", kind.name(), kind.parameters()[k].name);
-        let mut entries: Vec<(String, usize)> = Vec::new();
-        if let ([_], Some(kind), true) = (self.list.as_slice(), choice.diffuse, self.single()) {
-            entries.push((name(kind, 0), 0));
+        let mut entries: Vec<(String, usize)> = choice.diffuse.map(|kind| (name(kind, 0), 0)).into_iter().collect();
+        if self.has_specular() {
+            entries.extend([0, 1, 2].map(|k| (name(TermKind::TorranceSparrow, k), k + 1)));
         }
-        if self.list.len() == 1 && self.has_specular() {
-            if self.single() || self.shared_intensity {
-                entries.push((name(TermKind::TorranceSparrow, 0), 1));
-            }
-            entries.extend([1, 2].map(|k| (name(TermKind::TorranceSparrow, k), k + 1)));
-        }
-        let covariance = Array2::from_shape_fn((entries.len(), entries.len()), |(i, j)| {
-            self.list[0].fit.bands[0].covariance[entries[i].1][entries[j].1]
+        let bands: Vec<(&Observed, usize)> = self.bands().collect();
+        let covariance = Array3::from_shape_fn((bands.len(), entries.len(), entries.len()), |(emission, i, j)| {
+            let (fit, band) = (&bands[emission].0.fit, bands[emission].1);
+            let (i, j) = (entries[i].1, entries[j].1);
+            // A term that was not seen has no uncertainty of its shape.
+            if i.max(j) > 0 && !fit.has_specular() { f64::NAN } else { fit.bands[band].covariance[i][j] }
         });
         (entries.into_iter().map(|entry| entry.0).collect(), covariance)
     }

@@ -31,8 +31,8 @@ pub(crate) use kind::named;
 pub use kind::{Basis, NormalisedAt, Part, Quantity, QuantityKind, Reference, ReferenceLight, UnknownName};
 pub use photometry::luminous_efficacy;
 pub use rounded::rounded_with_uncertainty;
-pub(crate) use uncertainty::rows_plain;
 pub use uncertainty::{Component, CorrelatedOver, ErrorDistribution, EvaluationType, Statement, Uncertainty};
+pub(crate) use uncertainty::{rows_plain, tables_plain};
 pub use unit::SiUnit;
 pub use wavelength::{
     Band, Bandpass, BandpassCorrection, BandpassShape, EmissionAxis, WavelengthAxis, WavelengthError,

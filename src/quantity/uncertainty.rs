@@ -134,6 +134,29 @@ pub(crate) mod rows {
     }
 }
 
+/// The same for an array of tables.
+pub(crate) mod tables_plain {
+    use ndarray::{ArcArray, ArcArray2, Axis, Ix3};
+    use serde::{Deserialize, Deserializer, Serialize, Serializer, de::Error};
+
+    #[derive(Serialize, Deserialize)]
+    struct Table(#[serde(with = "super::rows_plain")] ArcArray2<f64>);
+
+    pub(crate) fn serialize<S: Serializer>(array: &ArcArray<f64, Ix3>, serializer: S) -> Result<S::Ok, S::Error> {
+        let tables: Vec<Table> = array.outer_iter().map(|table| Table(table.to_owned().into_shared())).collect();
+        tables.serialize(serializer)
+    }
+
+    pub(crate) fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<ArcArray<f64, Ix3>, D::Error> {
+        let tables = Vec::<Table>::deserialize(deserializer)?;
+        let views: Vec<_> = tables.iter().map(|table| table.0.view()).collect();
+        if views.is_empty() {
+            return Ok(ArcArray::zeros((0, 0, 0)));
+        }
+        ndarray::stack(Axis(0), &views).map(ndarray::ArrayBase::into_shared).map_err(D::Error::custom)
+    }
+}
+
 /// The same for an array that is always there.
 pub(crate) mod rows_plain {
     use ndarray::ArcArray2;

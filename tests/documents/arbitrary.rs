@@ -427,7 +427,10 @@ fn model(id: Id, measurements: &[Id]) -> impl Strategy<Value = Model> + use<> {
     let middle = (
         vec(term(), 0..3),
         vec(text(), 0..3),
-        (0_usize..3, 0_usize..3).prop_flat_map(|(rows, columns)| matrix(rows, columns)),
+        (0_usize..3, 0_usize..3, 0_usize..3).prop_flat_map(|(tables, rows, columns)| {
+            let shape = (tables, rows, columns);
+            matrix(tables * rows, columns).prop_map(move |all| all.into_shape_with_order(shape).unwrap())
+        }),
         (number(), number(), any::<u64>(), any::<u64>()),
     );
     let tail = (any::<bool>(), text(), vec(text(), 0..3), of(separability()), of(text()), vec(parameter(), 0..3));

@@ -6,7 +6,7 @@ mod arbitrary;
 use bbrf::dataset::*;
 use bbrf::quantity::*;
 use bbrf::terms::{Denominator, Distribution, TermKind};
-use ndarray::{ArcArray2, Array2};
+use ndarray::{ArcArray, Array2};
 
 pub use arbitrary::document as arbitrary_document;
 
@@ -182,7 +182,7 @@ pub fn model(data_digest: String) -> Model {
         ],
         nuisances: Vec::new(),
         covariance_parameters: vec!["lambertian.albedo".into(), "torrance-sparrow.intensity".into()],
-        covariance: ArcArray2::from_shape_vec((2, 2), vec![1e-4, 1e-5, 1e-5, 1e-3]).unwrap(),
+        covariance: ArcArray::from_shape_vec((1, 2, 2), vec![1e-4, 1e-5, 1e-5, 1e-3]).unwrap(),
         residuals: Residuals { rms: 0.01, reduced_chi_square: 1.02, count: 9, left_out: 1 },
         converged: true,
         method: "variable projection".into(),

@@ -167,7 +167,7 @@ pub(crate) fn model() -> Model {
         terms: vec![lambertian, specular],
         nuisances: Vec::new(),
         covariance_parameters: Vec::new(),
-        covariance: ndarray::ArcArray2::zeros((0, 0)),
+        covariance: ndarray::ArcArray::zeros((1, 0, 0)),
         residuals: Residuals { rms: 0.002_713, reduced_chi_square: 1.03, count: 272, left_out: 0 },
         converged: true,
         method: "variable projection; every start of the grid led to this minimum".to_owned(),

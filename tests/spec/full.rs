@@ -125,6 +125,9 @@ pub fn full() -> Document {
     spectral.emission = document.measurements[1].emission.clone();
     spectral.terms[0].parameters[0].value = vec![0.6; 5];
     spectral.terms[0].parameters[0].standard_uncertainty = vec![0.01; 5];
+    let tables: Vec<_> = (0..spectral.emission.len()).filter_map(|_| spectral.covariance_at(0)).collect();
+    let covariance = ndarray::stack(ndarray::Axis(0), &tables).unwrap().into_shared();
+    let spectral = Model { covariance, ..spectral };
     document.models.extend([Model { id: id("second"), ..model }, of_band, spectral]);
     document.provenance = provenance();
     document

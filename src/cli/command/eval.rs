@@ -42,7 +42,7 @@ pub(crate) struct Arguments {
     /// `standard_uncertainty` is what the independent errors of the data leave; `shared_relative_uncertainty`, where the model
     /// has it, is relative, the same for all values of the model (white reference, certificate) and not contained in the
     /// other. An entry is empty where the model has no covariance for a parameter that the value depends on; which, is said on
-    /// standard error. A model of many wavelengths holds no covariance of an amplitude with roughness and index.
+    /// standard error.
     #[arg(long)]
     uncertainty: bool,
     /// Print JSON instead of CSV

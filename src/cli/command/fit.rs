@@ -111,7 +111,7 @@ struct FittedModel {
     reference: String,
     /// The terms.
     terms: Vec<TermResult>,
-    /// Covariance of the parameters named.
+    /// Covariance of the parameters named, at each emission value.
     covariance: CovarianceResult,
     /// Residuals.
     residual: ResidualResult,
@@ -159,7 +159,11 @@ enum NumberOrList {
 #[derive(Debug, Serialize, JsonSchema)]
 struct CovarianceResult {
     parameters: Vec<String>,
-    matrix: Vec<Vec<Option<f64>>>,
+    matrices: Vec<Vec<Vec<Option<f64>>>>,
+}
+
+fn table(covariance: ndarray::ArrayView2<'_, f64>) -> Vec<Vec<Option<f64>>> {
+    covariance.rows().into_iter().map(|row| row.iter().copied().map(finite).collect()).collect()
 }
 
 #[derive(Debug, Serialize, JsonSchema)]
@@ -358,7 +362,7 @@ fn fitted_model(file: &Path, model: &Model, seconds: f64) -> FittedModel {
         terms,
         covariance: CovarianceResult {
             parameters: model.covariance_parameters.clone(),
-            matrix: model.covariance.rows().into_iter().map(|row| row.iter().copied().map(finite).collect()).collect(),
+            matrices: model.covariance.outer_iter().map(table).collect(),
         },
         residual: ResidualResult {
             rms: finite(model.residuals.rms),

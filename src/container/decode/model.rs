@@ -1,8 +1,9 @@
 //! A fitted model: its terms and parameters, covariance, residuals, separability.
 
+use ndarray::{ArcArray, Ix3};
+
 use super::super::error::ReadError;
 use super::super::layout::name;
-use super::measurement::matrix;
 use super::parts::emission_axis;
 use super::{At, dataset_text, numbers};
 use crate::dataset::{FittedParameter, FittedTerm, Id, Model, Residuals, Separability};
@@ -22,7 +23,7 @@ pub(super) fn model(id: Id, at: &At<'_>) -> Result<Model, ReadError> {
         terms: at.numbered(name::TERM).map(|at| term(&at)).collect::<Result<_, _>>()?,
         nuisances: parameters(at, name::NUISANCE)?,
         covariance_parameters: at.texts(name::COVARIANCE_PARAMETERS)?,
-        covariance: matrix(at, name::COVARIANCE, numbers)?,
+        covariance: covariance(at)?,
         residuals: Residuals {
             rms: at.number(name::RESIDUAL_RMS)?,
             reduced_chi_square: at.number(name::REDUCED_CHI_SQUARE)?,
@@ -34,6 +35,26 @@ pub(super) fn model(id: Id, at: &At<'_>) -> Result<Model, ReadError> {
         identifiability: identifiability.transpose()?.unwrap_or_default(),
         separability: at.child(name::SEPARABILITY).map(|at| separability(&at)).transpose()?,
     })
+}
+
+fn covariance(at: &At<'_>) -> Result<ArcArray<f64, Ix3>, ReadError> {
+    let (array, path) = (&at.dataset(name::COVARIANCE)?.array, at.member_path(name::COVARIANCE));
+    let (tables, rows, columns) = match array.shape[..] {
+        [rows, columns] => (1, rows, columns),
+        [tables, rows, columns] => (tables, rows, columns),
+        _ => {
+            let found = format!("shape {:?}", array.shape);
+            return Err(ReadError::unexpected(
+                &path,
+                found,
+                "two axes, parameter and parameter, or emission before them",
+            ));
+        }
+    };
+    let values = numbers(&array.data, &path)?;
+    let found =
+        || ReadError::unexpected(&path, format!("{} values", values.len()), format!("{:?} values", array.shape));
+    values.to_array((tables, rows, columns)).ok_or_else(found)
 }
 
 fn term(at: &At<'_>) -> Result<FittedTerm, ReadError> {

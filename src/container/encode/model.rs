@@ -22,8 +22,8 @@ pub(super) fn model(model: &Model) -> Result<Group, EncodeError> {
     group.attribute(name::REDUCED_CHI_SQUARE, Data::F64(vec![model.residuals.reduced_chi_square].into()));
     group.attribute(name::RESIDUAL_COUNT, Data::U64(vec![model.residuals.count].into()));
     group.attribute(name::RESIDUAL_LEFT_OUT, Data::U64(vec![model.residuals.left_out].into()));
-    emission_axis(&mut group, &model.emission)?;
-    covariance(&mut group, model)?;
+    let emission = emission_axis(&mut group, &model.emission)?;
+    covariance(&mut group, model, emission)?;
     if !model.identifiability.is_empty() {
         group.texts(name::IDENTIFIABILITY, model.identifiability.iter().map(String::as_str), "")?;
     }
@@ -39,13 +39,19 @@ pub(super) fn model(model: &Model) -> Result<Group, EncodeError> {
     Ok(group)
 }
 
-/// Both axes run over the same parameters, yet have a scale each: CF forbids a dimension twice in one variable.
-fn covariance(group: &mut Group, model: &Model) -> Result<(), EncodeError> {
-    let (rows, columns) = model.covariance.dim();
+/// One table is a matrix; one per emission value has that axis before. Both axes of a table run over the same parameters, yet
+/// have a scale each: CF forbids a dimension twice in one variable.
+fn covariance(group: &mut Group, model: &Model, emission: &str) -> Result<(), EncodeError> {
+    let (tables, rows, columns) = model.covariance.dim();
     group.index_scale(name::COVARIANCE_ROW, rows);
     group.index_scale(name::COVARIANCE_COLUMN, columns);
-    let array = Array { shape: vec![rows, columns], data: Data::F64(model.covariance.iter().copied().collect()) };
-    let axes = vec![name::COVARIANCE_ROW.to_owned(), name::COVARIANCE_COLUMN.to_owned()];
+    let mut shape = vec![rows, columns];
+    let mut axes = vec![name::COVARIANCE_ROW.to_owned(), name::COVARIANCE_COLUMN.to_owned()];
+    if tables != 1 {
+        shape.insert(0, tables);
+        axes.insert(0, emission.to_owned());
+    }
+    let array = Array { shape, data: Data::F64(model.covariance.iter().copied().collect()) };
     group
         .put(name::COVARIANCE, Dataset { axes, ..Dataset::new(array) })
         .long_name("covariance of the parameters; the unit of an element is the product of the units of its two");

@@ -2,7 +2,7 @@
 
 use std::ops::{Deref, DerefMut};
 
-use ndarray::{ArcArray1, ArcArray2};
+use ndarray::{ArcArray, ArcArray1, ArcArray2, ShapeArg};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 /// The values of an array in row-major order. A clone shares them, because a file of half a gigabyte must not be held
@@ -26,6 +26,15 @@ impl<T> Values<T> {
     /// The same values as a matrix; `None` where their number is another.
     #[must_use]
     pub fn to_matrix(&self, shape: (usize, usize)) -> Option<ArcArray2<T>>
+    where
+        T: Clone,
+    {
+        self.to_array(shape)
+    }
+
+    /// The values as an array of this shape, without a copy; `None` when their number is another.
+    #[must_use]
+    pub fn to_array<S: ShapeArg>(&self, shape: S) -> Option<ArcArray<T, S::Dim>>
     where
         T: Clone,
     {

@@ -66,7 +66,7 @@ fn of_terms(model: &Model, emission: usize, incidence: &Direction, shapes: &mut 
             relative = relative.max(shared);
         }
     }
-    let independent = propagated(model, &slopes);
+    let independent = propagated(model, emission, &slopes);
     Some((albedo, independent.hypot(albedo * relative)))
 }
 
@@ -80,14 +80,15 @@ fn uncertainty(term: &FittedTerm, parameter: &str, emission: usize) -> Option<(f
 
 /// Linear propagation through the covariance; where it does not have every parameter, the sum of the magnitudes, which
 /// no correlation exceeds.
-fn propagated(model: &Model, slopes: &[(String, f64, f64)]) -> f64 {
+fn propagated(model: &Model, emission: usize, slopes: &[(String, f64, f64)]) -> f64 {
     let index = |name: &String| model.covariance_parameters.iter().position(|known| known == name);
     let places: Option<Vec<usize>> = slopes.iter().map(|(name, ..)| index(name)).collect();
     let variance = places.and_then(|places| {
+        let covariance = model.covariance_at(emission)?;
         let mut sum = 0.0;
         for (i, (_, first, _)) in places.iter().zip(slopes) {
             for (j, (_, second, _)) in places.iter().zip(slopes) {
-                sum += first * second * model.covariance.get((*i, *j))?;
+                sum += first * second * covariance.get((*i, *j))?;
             }
         }
         (sum >= 0.0).then_some(sum)

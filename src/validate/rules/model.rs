@@ -1,5 +1,7 @@
 //! Do the fitted models hold together with the data?
 
+use ndarray::{ArrayView2, Axis};
+
 use super::super::Context;
 use super::super::finding::Finder;
 use crate::container::layout::name;
@@ -21,42 +23,68 @@ pub(in super::super) fn data_changed(context: &Context<'_>, found: &mut Finder) 
     }
 }
 
+/// The first element of a covariance that is wrong: its table and its place there.
+fn find_in_covariance(
+    model: &Model,
+    wrong: impl Fn(ArrayView2<'_, f64>, usize, usize, f64) -> bool,
+) -> Option<[usize; 3]> {
+    model.covariance.outer_iter().enumerate().find_map(|(table, covariance)| {
+        let mut elements = covariance.indexed_iter();
+        elements.find(|((i, j), value)| wrong(covariance, *i, *j, **value)).map(|((i, j), _)| [table, i, j])
+    })
+}
+
+/// An element as the file has it: one table is a matrix.
+fn element(path: &str, model: &Model, [table, i, j]: [usize; 3]) -> Place {
+    let place = Place::path(format!("{path}/{}", name::COVARIANCE));
+    if model.covariance.len_of(Axis(0)) == 1 { place.at_index([i, j]) } else { place.at_index([table, i, j]) }
+}
+
 pub(in super::super) fn covariance_symmetric(context: &Context<'_>, found: &mut Finder) {
     for (path, model) in models(context) {
-        let covariance = &model.covariance;
-        let asymmetric = covariance.indexed_iter().find(|((row, column), value)| {
-            covariance.get((*column, *row)).is_none_or(|other| {
-                // Rounding of a product in another order, relative to the two variances.
-                let scale = covariance[[*row, *row]].abs().max(covariance[[*column, *column]].abs());
-                (**value - other).abs() > 1e-12 * scale.max(value.abs())
-            })
-        });
-        if !covariance.is_square() {
+        if !is_square(model) {
             let place = Place::path(format!("{path}/{}", name::COVARIANCE));
-            found.add(place, format!("shape {:?}", covariance.shape()), "as many rows as columns");
-        } else if let Some(((row, column), value)) = asymmetric {
-            let place = Place::path(format!("{path}/{}", name::COVARIANCE)).at_index([row, column]);
-            found.add(place, value.to_string(), covariance[[column, row]].to_string());
+            found.add(place, format!("shape {:?}", model.covariance.shape()), "as many rows as columns");
+            continue;
+        }
+        // Rounding of a product in another order, relative to the two variances.
+        let asymmetric = find_in_covariance(model, |covariance, i, j, value| {
+            let scale = covariance[[i, i]].abs().max(covariance[[j, j]].abs());
+            (value - covariance[[j, i]]).abs() > 1e-12 * scale.max(value.abs())
+        });
+        if let Some([emission, i, j]) = asymmetric {
+            let (value, other) = (model.covariance[[emission, i, j]], model.covariance[[emission, j, i]]);
+            found.add(element(&path, model, [emission, i, j]), value.to_string(), other.to_string());
         }
     }
 }
 
+fn is_square(model: &Model) -> bool {
+    model.covariance.len_of(Axis(1)) == model.covariance.len_of(Axis(2))
+}
+
 pub(in super::super) fn covariance_diagonal(context: &Context<'_>, found: &mut Finder) {
     for (path, model) in models(context) {
-        let diagonal = model.covariance.diag();
-        if let Some(index) = diagonal.iter().position(|variance| *variance < 0.0) {
-            let place = Place::path(format!("{path}/{}", name::COVARIANCE)).at_index([index, index]);
-            found.add(place, diagonal[index].to_string(), "a variance of zero or more, or NaN");
+        if let Some(index) = find_in_covariance(model, |_, i, j, variance| i == j && variance < 0.0) {
+            found.add(
+                element(&path, model, index),
+                model.covariance[index].to_string(),
+                "a variance of zero or more, or NaN",
+            );
         }
     }
 }
 
 pub(in super::super) fn covariance_parameters(context: &Context<'_>, found: &mut Finder) {
     for (path, model) in models(context) {
-        let (names, rows) = (model.covariance_parameters.len(), model.covariance.nrows());
+        let (tables, rows, _) = model.covariance.dim();
+        let (names, emissions) = (model.covariance_parameters.len(), model.emission.len());
         if names != rows {
             let place = Place::path(format!("{path}/{}", name::COVARIANCE_PARAMETERS));
             found.add(place, format!("{names} names"), format!("{rows}, one for each row of the covariance"));
+        } else if tables != 1 && tables != emissions {
+            let place = Place::path(format!("{path}/{}", name::COVARIANCE));
+            found.add(place, format!("{tables} tables"), format!("one, or {emissions}: one for each emission value"));
         }
     }
 }
@@ -204,15 +232,18 @@ fn wrong_interval(fitted: &FittedParameter) -> Option<(&'static str, usize)> {
 }
 
 pub(in super::super) fn correlation(context: &Context<'_>, found: &mut Finder) {
-    for (path, model) in models(context).filter(|(_, model)| model.covariance.is_square()) {
-        let covariance = &model.covariance;
-        let beyond = covariance.indexed_iter().find(|((row, column), value)| {
-            let bound = (covariance[[*row, *row]] * covariance[[*column, *column]]).sqrt();
-            row < column && value.abs() > bound * (1.0 + 1e-9)
+    for (path, model) in models(context).filter(|(_, model)| is_square(model)) {
+        let beyond = find_in_covariance(model, |covariance, i, j, value| {
+            let bound = (covariance[[i, i]] * covariance[[j, j]]).sqrt();
+            i < j && value.abs() > bound * (1.0 + 1e-9)
         });
-        if let Some(((row, column), value)) = beyond {
-            let place = Place::path(format!("{path}/{}", name::COVARIANCE)).at_index([row, column]);
-            found.add(place, value.to_string(), "at most the geometric mean of the two variances in magnitude");
+        if let Some(index) = beyond {
+            let value = model.covariance[index].to_string();
+            found.add(
+                element(&path, model, index),
+                value,
+                "at most the geometric mean of the two variances in magnitude",
+            );
         }
     }
 }
