@@ -49,7 +49,7 @@ impl Problem {
         let rules = Rules { tolerance: 0.0, freedom, evaluations: 10_000, damping: 100.0 };
         let mut landscape = LeastSquares::new(self);
         let mut descent = descend(&mut landscape, start, &bounds, &rules).unwrap();
-        sharpen(&mut landscape, &mut descent, &bounds);
+        sharpen(&mut landscape, &mut descent, &bounds, 0.0);
         descent
     }
 }

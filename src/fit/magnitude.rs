@@ -1,7 +1,7 @@
 //! Numbers whose squares leave the range of double precision cannot be fitted: they would give NaN for a result.
 #![allow(clippy::needless_range_loop, reason = "a lane is an index into several arrays, and is told to be one")]
 
-use ndarray::ArrayView2;
+use ndarray::{ArrayView1, ArrayView2};
 
 use super::error::DataError;
 use super::left_out::reason;
@@ -11,41 +11,59 @@ use super::samples::LANES;
 /// then every sum of squares of a million values is finite, with room for the angular factors.
 const LARGEST: f64 = 1e60;
 
-/// Checks the values that take part and gives their smallest uncertainty, 1 where none is stated.
-#[inline(always)]
-pub(super) fn check(values: ArrayView2<f64>, sigma: Option<ArrayView2<f64>>) -> Result<f64, DataError> {
-    let of_values = Range::of(values, |value| value.abs() <= f64::MAX);
-    let of_sigma = sigma.map(|sigma| Range::of(sigma, |sigma| (sigma > 0.0) & (sigma <= f64::MAX)));
-    let smallest = of_sigma.as_ref().map_or(1.0, |sigma| sigma.smallest);
-    let ordinary = of_values.is_ordinary()
-        && of_sigma.as_ref().is_none_or(Range::is_ordinary)
-        && of_values.largest <= LARGEST * smallest;
-    if ordinary {
-        return Ok(smallest);
-    }
-    // Some number is extreme; does it take part, and which is it?
-    each(values, sigma)?;
-    Ok(smallest)
+/// What all values and uncertainties are like.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Checked {
+    /// The smallest uncertainty, 1 where none is stated.
+    pub(super) smallest_sigma: f64,
+    /// True where no value is missing.
+    pub(super) complete: bool,
 }
 
-/// Smallest and largest magnitude among numbers of an array that are not 0.
+/// Checks the values that take part. `one_sigma` says that the uncertainties of every row are those of the first.
+#[inline(always)]
+pub(super) fn check(
+    values: ArrayView2<f64>,
+    sigma: Option<ArrayView2<f64>>,
+    one_sigma: bool,
+) -> Result<Checked, DataError> {
+    let of_values = Range::of(values.rows(), f64::abs);
+    let rows = if one_sigma { 1 } else { usize::MAX };
+    // What is not above 0 is no uncertainty.
+    let of_sigma = sigma.map(|sigma| Range::of(sigma.rows().into_iter().take(rows), |sigma| sigma));
+    let smallest_sigma = of_sigma.as_ref().map_or(1.0, |sigma| sigma.smallest);
+    let ordinary = of_values.is_ordinary()
+        && of_sigma.as_ref().is_none_or(Range::is_ordinary)
+        && of_values.largest <= LARGEST * smallest_sigma;
+    if !ordinary {
+        // Some number is extreme, or infinite; does it take part, and which is it?
+        each(values, sigma)?;
+    }
+    Ok(Checked { smallest_sigma, complete: of_values.complete })
+}
+
+/// Smallest and largest among the magnitudes of numbers that are above 0.
 struct Range {
     smallest: f64,
     largest: f64,
+    /// True where every number is finite.
+    complete: bool,
 }
 
 impl Range {
     #[inline(always)]
-    fn of(numbers: ArrayView2<f64>, counts: impl Fn(f64) -> bool) -> Self {
-        let mut smallest = [f64::INFINITY; LANES];
-        let mut largest = [0.0; LANES];
+    fn of<'a>(rows: impl IntoIterator<Item = ArrayView1<'a, f64>>, magnitude: impl Fn(f64) -> f64) -> Self {
+        let mut lanes = [[f64::INFINITY; LANES], [0.0; LANES], [0.0; LANES]];
+        // Not a number is neither larger nor smaller.
         let mut take = |lane: usize, number: f64| {
-            let magnitude = if counts(number) { number.abs() } else { 0.0 };
+            let magnitude = magnitude(number);
             let some = if magnitude > 0.0 { magnitude } else { f64::INFINITY };
-            largest[lane] = if magnitude > largest[lane] { magnitude } else { largest[lane] };
-            smallest[lane] = if some < smallest[lane] { some } else { smallest[lane] };
+            lanes[0][lane] = if some < lanes[0][lane] { some } else { lanes[0][lane] };
+            lanes[1][lane] = if magnitude > lanes[1][lane] { magnitude } else { lanes[1][lane] };
+            // 0, unless one is infinite or no number.
+            lanes[2][lane] += 0.0 * number;
         };
-        for row in numbers.rows() {
+        for row in rows {
             // A row that is no slice has strides of its own; it is as rare as it is slow.
             let Some(row) = row.as_slice() else {
                 row.iter().for_each(|number| take(0, *number));
@@ -61,9 +79,12 @@ impl Range {
                 take(0, *number);
             }
         }
+        // Not seen through, as in `samples::totals`.
+        let [smallest, largest, not_finite] = std::hint::black_box(lanes);
         Self {
             smallest: smallest.into_iter().fold(f64::INFINITY, f64::min),
             largest: largest.into_iter().fold(0.0, f64::max),
+            complete: not_finite == [0.0; LANES],
         }
     }
 

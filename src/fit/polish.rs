@@ -12,6 +12,9 @@ use super::samples::Samples;
 const MOST_EVALUATIONS: usize = 60;
 /// Longest step in ln r and ln(n - 1).
 const LONGEST_STEPS: [f64; 2] = [0.7, 1.5];
+/// Where rounding hides the tolerance the gradient goes on to this share of it, a thousandth of the distance to the minimum;
+/// to the last digit it would take several evaluations more, and no measurement has those digits.
+const SHARP: f64 = 1e-6;
 
 /// The reduced problem of one set of samples, with the room that its evaluations need.
 #[derive(Debug)]
@@ -77,10 +80,10 @@ impl<'a> Reduced<'a> {
         let rules = Rules { tolerance, freedom: self.freedom, evaluations: MOST_EVALUATIONS, damping: 1e-4 };
         let mut walk = Walk { held: fixed.amplitude, known, last: Curvature::default(), reduced: self };
         let mut descent = descend(&mut walk, &start.log, &bounds, &rules).ok()?;
-        if descent.end == End::Converged && descent.left > tolerance * descent.height.chi_square / walk.reduced.freedom
-        {
-            // The values are so exact that the rounding of chi-square ended it, not the tolerance.
-            sharpen(&mut walk, &mut descent, &bounds);
+        let enough = tolerance * descent.height.chi_square / walk.reduced.freedom;
+        if descent.end == End::Converged && descent.left > enough {
+            // The values are so exact, or so many, that the rounding of chi-square ended it, not the tolerance.
+            sharpen(&mut walk, &mut descent, &bounds, SHARP * enough);
         }
         let on_edge = [0, 1].map(|k| descent.held[k] && !fixed.shape[k]);
         let stop = match descent.end {

@@ -74,7 +74,7 @@ impl<'a> Reweighted<'a> {
                 bounds.push(*bound);
             }
         }
-        magnitude::check(values.view(), Some(sigma.view()))?;
+        magnitude::check(values.view(), Some(sigma.view()), false)?;
         bounds.iter().for_each(|bound| values[(bound.emission, bound.geometry)] = f64::NAN);
         Ok(Self { fitter, values, sigma, bounds, loss: data.loss, scale: 1.0, careful: false })
     }

@@ -37,19 +37,33 @@ fn gather(into: &mut [f64], from: ArrayView1<f64>, order: &[usize]) {
     }
 }
 
-/// True where all emission values have the same uncertainties and lack the same values.
-pub(super) fn has_one_weighting(values: ArrayView2<f64>, sigma: Option<ArrayView2<f64>>) -> bool {
-    let one_sigma = sigma.is_none_or(|sigma| {
-        let first = sigma.row(0);
-        // An array that repeats one row by its strides need not be compared.
-        sigma.strides()[0] == 0 || sigma.rows().into_iter().skip(1).all(|row| row == first)
-    });
-    let first = values.row(0);
-    one_sigma
-        && values.rows().into_iter().skip(1).all(|row| {
-            // As a sum, which the compiler turns into vector instructions where a search that ends early would not be.
-            let differing: usize =
-                row.iter().zip(&first).map(|(a, b)| usize::from(a.is_finite() != b.is_finite())).sum();
-            differing == 0
-        })
+/// True where all emission values have the same uncertainties.
+#[inline(always)]
+pub(super) fn has_one_sigma(sigma: Option<ArrayView2<f64>>) -> bool {
+    // An array that repeats one row by its strides need not be compared.
+    sigma.is_none_or(|sigma| sigma.strides()[0] == 0 || no_row_differs(sigma, |a, b| a != b))
+}
+
+/// True where all emission values lack the same values.
+#[inline(always)]
+pub(super) fn has_one_gap_pattern(values: ArrayView2<f64>) -> bool {
+    no_row_differs(values, |a, b| a.is_finite() != b.is_finite())
+}
+
+/// True where no row has a number that differs from that of the first row.
+#[inline(always)]
+fn no_row_differs(numbers: ArrayView2<f64>, differs: impl Fn(f64, f64) -> bool) -> bool {
+    let mut rows = numbers.rows().into_iter();
+    let Some(first) = rows.next() else { return true };
+    for row in rows {
+        // As a sum and over slices, which the compiler turns into vector instructions; a search that ends early it would not.
+        let differing: usize = match (row.as_slice(), first.as_slice()) {
+            (Some(row), Some(first)) => row.iter().zip(first).map(|(a, b)| usize::from(differs(*a, *b))).sum(),
+            _ => row.iter().zip(first).map(|(a, b)| usize::from(differs(*a, *b))).sum(),
+        };
+        if differing > 0 {
+            return false;
+        }
+    }
+    true
 }

@@ -6,7 +6,7 @@ use ndarray::ArrayView2;
 use super::geometry_set::GeometrySet;
 use super::left_out::{LeftOut, reason};
 use super::linear::Gram;
-use super::row::{Row, has_one_weighting};
+use super::row::Row;
 
 /// One or several emission values, sorted and weighted.
 #[derive(Debug, Clone)]
@@ -15,12 +15,14 @@ pub(super) struct Samples {
     points: usize,
     /// True where all emission values have the same weights, so that they are kept once.
     shared: bool,
-    /// (smallest sigma / sigma)^2 \[1 or B, points\]; 0 for a value that is not used and for padding.
-    weight: Vec<f64>,
-    /// Weight times the diffuse column \[1 or B, points\].
-    weighted_diffuse: Vec<f64>,
-    /// Weight times value \[B, points\].
-    weighted_value: Vec<f64>,
+    /// Weights \[1 or B, points\], (smallest sigma / sigma)^2, 0 for a value that is not used and for padding; then weights
+    /// times values \[B, points\]. One piece of memory, which an allocator keeps for the next fit; of several it
+    /// gives some back to the system, and pages that come anew take as long as an evaluation.
+    numbers: Vec<f64>,
+    /// The diffuse column \[points\], of zeros without a diffuse term.
+    diffuse: Vec<f64>,
+    /// The sum of each row of weights.
+    total_weight: Vec<f64>,
     /// Inner products that do not depend on the specular term, one per emission value.
     pub(super) gram: Vec<Gram>,
     /// Values used, one per emission value.
@@ -32,7 +34,7 @@ pub(super) struct Samples {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Sample<'a> {
     pub(super) weight: &'a [f64],
-    pub(super) weighted_diffuse: &'a [f64],
+    pub(super) diffuse: &'a [f64],
     pub(super) weighted_value: &'a [f64],
 }
 
@@ -47,7 +49,8 @@ impl Sample<'_> {
 }
 
 impl Samples {
-    /// Sorts and weights values \[B, N\]; `root_unit` is 1 over the smallest sigma, so that no weight overflows.
+    /// Sorts and weights values \[B, N\]; `root_unit` is 1 over the smallest sigma, so that no weight overflows. `shared`
+    /// says that every row has the uncertainties and the gaps of the first.
     #[inline(always)]
     pub(super) fn new(
         set: &GeometrySet,
@@ -55,32 +58,23 @@ impl Samples {
         values: ArrayView2<f64>,
         sigma: Option<ArrayView2<f64>>,
         root_unit: f64,
+        shared: bool,
     ) -> Self {
-        let (bands, points) = (values.nrows(), set.points());
-        let shared = bands > 1 && has_one_weighting(values, sigma);
-        let weightings = if shared { 1 } else { bands };
-        let mut samples = Self {
-            points,
-            shared,
-            weight: vec![0.0; weightings * points],
-            weighted_diffuse: vec![0.0; weightings * points],
-            weighted_value: vec![0.0; bands * points],
-            gram: vec![Gram::default(); bands],
-            count: vec![0; bands],
-            left_out: LeftOut::default(),
-        };
-        let mut row = Row::new(points);
+        let bands = values.nrows();
+        let column = if diffuse { set.diffuse.clone() } else { vec![0.0; set.points()] };
+        let mut samples = Self::zeros(bands, shared, column);
+        let weightings = samples.weightings();
+        let mut row = Row::new(samples.points);
         for band in 0..bands {
             // Under the weights of the first no other uncertainties are looked at.
             row.fill(set, values.row(band), sigma.as_ref().filter(|_| band < weightings).map(|sigma| sigma.row(band)));
             if band < weightings {
-                samples.weigh(set, diffuse, band, &row, root_unit);
+                samples.weigh(band, &row, root_unit);
                 // Without uncertainties every sigma is 1, in no unit.
                 samples.count_left_out(set, band, &row, sigma.is_some());
             } else {
                 samples.weigh_as_first(band, &row);
             }
-            samples.complete_gram(set, band);
         }
         if shared {
             let first = samples.left_out;
@@ -89,54 +83,88 @@ impl Samples {
         samples
     }
 
-    /// Weights one emission value.
-    #[inline(always)]
-    fn weigh(&mut self, set: &GeometrySet, diffuse: bool, band: usize, row: &Row, root_unit: f64) {
-        let range = band * self.points..(band + 1) * self.points;
-        let (weight, weighted_diffuse) = (&mut self.weight[range.clone()], &mut self.weighted_diffuse[range.clone()]);
-        let weighted_value = &mut self.weighted_value[range];
-        let column = if diffuse { 1.0 } else { 0.0 };
-        let mut syy = [0.0; LANES];
-        for chunk in 0..self.points / LANES {
-            for lane in 0..LANES {
-                let k = chunk * LANES + lane;
-                let (value, sigma) = (row.value[k], row.sigma[k]);
-                // Without a branch, and without a form that the compiler takes for a test of bits: so it becomes vectors.
-                let used = (value.abs() <= f64::MAX) & (sigma > 0.0) & (sigma <= f64::MAX);
-                let relative = root_unit * sigma;
-                let w = if used { (relative * relative).recip() } else { 0.0 };
-                let value = if used { value } else { 0.0 };
-                weight[k] = w;
-                weighted_diffuse[k] = w * (column * set.diffuse[k]);
-                weighted_value[k] = w * value;
-                syy[lane] += w * value * value;
-            }
+    fn zeros(bands: usize, shared: bool, diffuse: Vec<f64>) -> Self {
+        let (points, weightings) = (diffuse.len(), if shared { 1 } else { bands });
+        Self {
+            points,
+            shared,
+            numbers: vec![0.0; (weightings + bands) * points],
+            diffuse,
+            total_weight: vec![0.0; weightings],
+            gram: vec![Gram::default(); bands],
+            count: vec![0; bands],
+            left_out: LeftOut::default(),
         }
-        self.gram[band].syy = total(syy);
+    }
+
+    /// Weights one emission value, with the sums that belong to it.
+    #[inline(always)]
+    fn weigh(&mut self, band: usize, row: &Row, root_unit: f64) {
+        let points = self.points;
+        let (weights, values) = self.numbers.split_at_mut(self.total_weight.len() * points);
+        let range = band * points..(band + 1) * points;
+        let (weight, weighted_value) = (chunks_mut(&mut weights[range.clone()]), chunks_mut(&mut values[range]));
+        let (value, sigma, diffuse) = (chunks(&row.value), chunks(&row.sigma), chunks(&self.diffuse));
+        // Of one length, which needs no test at each index.
+        let count = diffuse.len().min(value.len()).min(sigma.len()).min(weight.len()).min(weighted_value.len());
+        let (weight, weighted_value) = (&mut weight[..count], &mut weighted_value[..count]);
+        let (value, sigma, diffuse) = (&value[..count], &sigma[..count], &diffuse[..count]);
+        let mut sums = [[0.0; LANES]; 4];
+        for k in 0..count {
+            // Whole lanes are read before any is written: so it becomes vectors.
+            let (value, sigma, d) = (value[k], sigma[k], diffuse[k]);
+            let (mut w, mut weighted) = ([0.0; LANES], [0.0; LANES]);
+            for lane in 0..LANES {
+                // Without a branch, and without a form that the compiler takes for a test of bits, for the same reason.
+                let used = (value[lane].abs() <= f64::MAX) & (sigma[lane] > 0.0) & (sigma[lane] <= f64::MAX);
+                let relative = root_unit * sigma[lane];
+                w[lane] = if used { (relative * relative).recip() } else { 0.0 };
+                let value = if used { value[lane] } else { 0.0 };
+                weighted[lane] = w[lane] * value;
+                sums[0][lane] += weighted[lane] * value;
+                sums[1][lane] += (w[lane] * d[lane]) * d[lane];
+                sums[2][lane] += weighted[lane] * d[lane];
+                sums[3][lane] += w[lane];
+            }
+            (weight[k], weighted_value[k]) = (w, weighted);
+        }
+        let [syy, s11, s1y, total_weight] = totals(sums);
+        self.gram[band] = Gram { s11, s1y, syy, ..Gram::default() };
+        self.total_weight[band] = total_weight;
     }
 
     /// Another emission value under the weights of the first.
     #[inline(always)]
     fn weigh_as_first(&mut self, band: usize, row: &Row) {
-        let weighted_value = &mut self.weighted_value[band * self.points..(band + 1) * self.points];
-        let mut syy = [0.0; LANES];
-        for chunk in 0..self.points / LANES {
+        let points = self.points;
+        let (weight, values) = self.numbers.split_at_mut(points);
+        let (weight, weighted_value) = (chunks(weight), chunks_mut(&mut values[band * points..(band + 1) * points]));
+        let (value, diffuse) = (chunks(&row.value), chunks(&self.diffuse));
+        let count = diffuse.len().min(value.len()).min(weight.len()).min(weighted_value.len());
+        let (weight, weighted_value) = (&weight[..count], &mut weighted_value[..count]);
+        let (value, diffuse) = (&value[..count], &diffuse[..count]);
+        let mut sums = [[0.0; LANES]; 2];
+        for k in 0..count {
+            let (w, value, d) = (weight[k], value[k], diffuse[k]);
+            let mut weighted = [0.0; LANES];
             for lane in 0..LANES {
-                let k = chunk * LANES + lane;
                 // A value that no emission value uses may be no number.
-                let value = if self.weight[k] > 0.0 { row.value[k] } else { 0.0 };
-                weighted_value[k] = self.weight[k] * value;
-                syy[lane] += self.weight[k] * value * value;
+                let value = if w[lane] > 0.0 { value[lane] } else { 0.0 };
+                weighted[lane] = w[lane] * value;
+                sums[0][lane] += weighted[lane] * value;
+                sums[1][lane] += weighted[lane] * d[lane];
             }
+            weighted_value[k] = weighted;
         }
-        self.gram[band].syy = total(syy);
+        let [syy, s1y] = totals(sums);
+        self.gram[band] = Gram { s11: self.gram[0].s11, s1y, syy, ..Gram::default() };
         self.count[band] = self.count[0];
     }
 
     /// Counts what is used, and what is not by its reason.
     #[inline(always)]
     fn count_left_out(&mut self, set: &GeometrySet, band: usize, row: &Row, has_sigma: bool) {
-        let weight = &self.weight[band * self.points..(band + 1) * self.points];
+        let weight = &self.numbers[band * self.points..(band + 1) * self.points];
         let used: usize = weight.iter().map(|weight| usize::from(*weight > 0.0)).sum();
         self.count[band] = used;
         if used == set.order.len() {
@@ -150,27 +178,17 @@ impl Samples {
         }
     }
 
-    #[inline(always)]
-    fn complete_gram(&mut self, set: &GeometrySet, band: usize) {
-        let sample = self.sample(band);
-        let s11 = dot(sample.weighted_diffuse, &set.diffuse);
-        // Without a diffuse term its column is 0, and so is its product with the data.
-        let s1y = if s11 > 0.0 { dot(sample.weighted_value, &set.diffuse) } else { 0.0 };
-        let gram = &mut self.gram[band];
-        (gram.s11, gram.s1y) = (s11, s1y);
-    }
-
     /// A weighted sum over emission values obeys the same model with the same roughness and index: one grid serves all. A
     /// point counts where every emission value has one. Each emission value weighs by its signal over its variance, so
     /// that one that is lost in noise drowns no other.
     #[inline(always)]
-    pub(super) fn summed(&self, set: &GeometrySet, diffuse: bool) -> Self {
+    pub(super) fn summed(&self, set: &GeometrySet) -> Self {
         let mut sum = vec![0.0; self.points];
         let mut variance: Vec<f64> = vec![0.0; self.points];
         let mut weighed = 0.0;
         for band in 0..self.bands() {
             let sample = self.sample(band);
-            let share = (self.gram[band].syy * sum_of(sample.weight)).sqrt();
+            let share = (self.gram[band].syy * self.total_weight[if self.shared { 0 } else { band }]).sqrt();
             weighed += share * share;
             if self.shared {
                 for (sum, weighted) in sum.iter_mut().zip(sample.weighted_value) {
@@ -193,26 +211,16 @@ impl Samples {
             }
         }
         let largest = variance.iter().copied().filter(|v| v.is_finite()).fold(0.0, f64::max);
-        let mut total = Self {
-            points: self.points,
-            shared: false,
-            weight: vec![0.0; self.points],
-            weighted_diffuse: vec![0.0; self.points],
-            weighted_value: vec![0.0; self.points],
-            gram: vec![Gram::default()],
-            count: vec![0],
-            left_out: LeftOut::default(),
-        };
-        let known = |point: &usize| variance[*point] > 0.0 && variance[*point].is_finite();
-        for point in (0..set.order.len()).filter(known) {
-            let (weight, value) = (largest / variance[point], sum[point] / largest.sqrt());
-            total.weight[point] = weight;
-            total.weighted_diffuse[point] = if diffuse { weight * set.diffuse[point] } else { 0.0 };
-            total.weighted_value[point] = weight * value;
-            total.gram[0].syy += weight * value * value;
-            total.count[0] += 1;
+        let root = largest.sqrt();
+        let mut row = Row::new(self.points);
+        row.value.fill(f64::NAN);
+        for point in 0..set.order.len() {
+            // Not known where the variance is 0 or infinite: sigma then says so, too.
+            (row.value[point], row.sigma[point]) = (sum[point] / root, variance[point].sqrt());
         }
-        total.complete_gram(set, 0);
+        let mut total = Self::zeros(1, false, self.diffuse.clone());
+        total.weigh(0, &row, root.recip());
+        total.count_left_out(set, 0, &row, true);
         total
     }
 
@@ -230,10 +238,15 @@ impl Samples {
         let range = |band: usize| band * self.points..(band + 1) * self.points;
         let weighting = if self.shared { 0 } else { band };
         Sample {
-            weight: &self.weight[range(weighting)],
-            weighted_diffuse: &self.weighted_diffuse[range(weighting)],
-            weighted_value: &self.weighted_value[range(band)],
+            weight: &self.numbers[range(weighting)],
+            diffuse: &self.diffuse,
+            weighted_value: &self.numbers[range(self.weightings() + band)],
         }
+    }
+
+    /// How many rows of weights there are.
+    fn weightings(&self) -> usize {
+        self.total_weight.len()
     }
 
     /// Values used, over all emission values.
@@ -244,6 +257,17 @@ impl Samples {
 
 /// Lanes of every sum: the order of additions, and so the result, is the same on every machine.
 pub(super) const LANES: usize = 4;
+
+/// A padded column in whole lanes.
+#[inline(always)]
+pub(super) fn chunks(column: &[f64]) -> &[[f64; LANES]] {
+    column.as_chunks().0
+}
+
+#[inline(always)]
+fn chunks_mut(column: &mut [f64]) -> &mut [[f64; LANES]] {
+    column.as_chunks_mut().0
+}
 
 /// The inner product of two padded columns.
 #[inline(always)]
@@ -257,16 +281,12 @@ pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
     total(lanes)
 }
 
-/// The sum of a padded column.
+/// The totals of several sums.
 #[inline(always)]
-fn sum_of(column: &[f64]) -> f64 {
-    let mut lanes = [0.0; LANES];
-    for x in column.as_chunks::<LANES>().0 {
-        for lane in 0..LANES {
-            lanes[lane] += x[lane];
-        }
-    }
-    total(lanes)
+pub(super) fn totals<const K: usize>(sums: [[f64; LANES]; K]) -> [f64; K] {
+    // Seen through, the compiler makes vectors of the first lanes of all sums, of their second lanes, and so on, which it
+    // then gathers lane by lane in the loop over the points.
+    std::hint::black_box(sums).map(total)
 }
 
 #[inline(always)]

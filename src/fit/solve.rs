@@ -8,9 +8,10 @@ use super::error::DataError;
 use super::geometry_set::{GeometrySet, INDEX_BOX};
 use super::left_out::LeftOut;
 use super::linear::{Amplitudes, Gram};
-use super::magnitude;
+use super::magnitude::{self, Checked};
 use super::outcome::{BandFit, Fit, Stop};
 use super::polish::{Fixed, Polished, Reduced};
+use super::row::{has_one_gap_pattern, has_one_sigma};
 use super::samples::Samples;
 use super::starts::starts;
 use super::statistics;
@@ -133,8 +134,10 @@ impl<'a> Fitter<'a> {
             return Err(DataError::NoTerm);
         }
         self.check_shape(values, sigma)?;
-        let smallest = magnitude::check(values, sigma)?;
-        let samples = Samples::new(self.set, self.terms.diffuse, values, sigma, smallest.recip());
+        let one_sigma = has_one_sigma(sigma);
+        let Checked { smallest_sigma: smallest, complete } = magnitude::check(values, sigma, one_sigma)?;
+        let shared = values.nrows() > 1 && one_sigma && (complete || has_one_gap_pattern(values));
+        let samples = Samples::new(self.set, self.terms.diffuse, values, sigma, smallest.recip(), shared);
         let mut left_out = samples.left_out;
         left_out.undefined_geometry = self.set.undefined().len() * samples.bands();
         let (usable, parameters) = (samples.used(), self.parameters(samples.bands()));
@@ -281,7 +284,7 @@ impl<'a> Fitter<'a> {
     /// Starts of several emission values: the minima of their sum, those beside the best where they are nearly as good.
     #[inline(always)]
     fn common_starts(&self, data: &Prepared) -> Vec<Point> {
-        let summed = data.samples.summed(self.set, self.terms.diffuse);
+        let summed = data.samples.summed(self.set);
         let freedom = (summed.used() as f64 - self.parameters(1) as f64).max(1.0);
         let alone = Prepared { samples: summed, unit: None, freedom, left_out: LeftOut::default() };
         let mut reduced = self.reduced(&alone);

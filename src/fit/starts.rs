@@ -40,13 +40,14 @@ fn segment_sums(set: &GeometrySet, samples: &Samples, index_node: usize, into: &
     let sample = samples.sample(0);
     into.clear();
     for segment in &set.segments {
-        let mut sums = [0.0; 3];
+        let (mut ff, mut f1, mut fy) = (0.0, 0.0, 0.0);
         for point in segment.start..segment.end {
             let f = specular[point];
-            sums[0] += sample.weight[point] * f * f;
-            sums[1] += sample.weighted_diffuse[point] * f;
-            sums[2] += sample.weighted_value[point] * f;
+            let weighted = sample.weight[point] * f;
+            ff += weighted * f;
+            f1 += weighted * sample.diffuse[point];
+            fy += sample.weighted_value[point] * f;
         }
-        into.push(sums);
+        into.push([ff, f1, fy]);
     }
 }

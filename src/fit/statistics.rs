@@ -144,15 +144,14 @@ fn cholesky(gram: &Triangle) -> Option<(Triangle, [f64; 4])> {
 fn jacobian(reduced: &Reduced<'_>, sample: &Sample<'_>, intensity: f64, held: [bool; 2]) -> [Vec<f64>; 4] {
     let [by_r, by_m] = held.map(|held| if held { 0.0 } else { intensity });
     let root: Vec<f64> = sample.weight.iter().map(|weight| weight.sqrt()).collect();
-    let diffuse = sample
-        .weighted_diffuse
-        .iter()
-        .zip(&root)
-        .map(|(weighted, root)| if *root > 0.0 { weighted / root } else { 0.0 })
-        .collect();
     let scaled = |column: &[f64], scale: f64| column.iter().zip(&root).map(|(x, root)| scale * root * x).collect();
     let columns = &reduced.columns;
-    [diffuse, scaled(&columns.specular, 1.0), scaled(&columns.by_r, by_r), scaled(&columns.by_m, by_m)]
+    [
+        scaled(sample.diffuse, 1.0),
+        scaled(&columns.specular, 1.0),
+        scaled(&columns.by_r, by_r),
+        scaled(&columns.by_m, by_m),
+    ]
 }
 
 fn residual_square(jacobian: &[Vec<f64>; 4], sample: &Sample<'_>, diffuse: f64, intensity: f64) -> f64 {

@@ -11,14 +11,18 @@ const ROUNDINGS: f64 = 1e3;
 const MOST_STEPS: usize = 200;
 
 /// Takes undamped steps from where a descent ended, as long as each brings the minimum nearer by the measure of the
-/// gradient and chi-square does not rise beyond its rounding.
+/// gradient and chi-square does not rise beyond its rounding, until it says that chi-square could decrease by no more than
+/// `enough`; 0 asks for the last digit.
 ///
 /// Chi-square is flat at its minimum, so that its rounding hides half of the digits of the parameters; the gradient is
 /// not. For certified values; a measurement has no use for digits that its noise has not.
-pub fn sharpen<L: Landscape>(landscape: &mut L, descent: &mut Descent<L::Slope>, bounds: &Bounds<'_>) {
+pub fn sharpen<L: Landscape>(landscape: &mut L, descent: &mut Descent<L::Slope>, bounds: &Bounds<'_>, enough: f64) {
     let lowest = descent.height;
     let mut room = Room::new(descent.point.len());
     for _ in 0..MOST_STEPS {
+        if descent.left <= enough {
+            return;
+        }
         bounds.damped_step(&descent.slope, &descent.point, 0.0, &mut room);
         if room.trial == descent.point {
             return;
