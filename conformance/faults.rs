@@ -366,6 +366,13 @@ pub const FAULTS: &[Fault] = &[
     d("reference.light", "unknown", |d| density(d).quantity.reference_light = ReferenceLight::Light("d65".into())),
     d("reference.excitation", "beyond-the-end", |d| density(d).acquisitions[0].excitation = Some(6)),
 
+    d("factorisation.shape", "a-row-less", |d| d.factorisations[0].excitation_nm.truncate(5)),
+    d("factorisation.shape", "elastic-short", |d| d.factorisations[0].elastic.truncate(5)),
+    d("factorisation.axis", "descending", |d| d.factorisations[0].excitation_nm[1] = 300.0),
+    d("factorisation.negative", "emission", |d| d.factorisations[0].emission_factor[[0, 3]] = -0.01),
+    d("factorisation.negative", "uncertainty", |d| d.factorisations[0].excitation_u[[0, 0]] = -0.01),
+    d("factorisation.data-changed", "said", |d| d.factorisations[0].data_digest = format!("sha256:{}", "0".repeat(64))),
+    d("reference.dangling", "matrix-of-factors", |d| d.factorisations[0].measurement = id("other")),
     d("model.data-changed", "a-value", |d| scan(d).values[[0, 0]] *= 1.0 + 1e-12),
     d("model.data-changed", "another-digest", |d| d.models[0].data_digest = format!("sha256:{}", "0".repeat(64))),
     d("model.covariance-symmetric", "one-side", |d| d.models[0].covariance[[0, 0, 1]] *= 2.0),

@@ -23,6 +23,7 @@ pub(crate) fn all() -> Vec<(&'static str, Schema)> {
         ("convert", schema_for!(super::convert::ConvertResult)),
         ("convert-model", schema_for!(super::convert::ConvertModelResult)),
         ("design", schema_for!(super::design::DesignResult)),
+        ("donaldson-separate", schema_for!(super::donaldson::separate::SeparateResult)),
         ("document", schema_for!(Document)),
         ("eval", schema_for!(super::eval::EvalResult)),
         ("eval-model", schema_for!(crate::cli::model_source::ModelJson)),

@@ -1,0 +1,25 @@
+//! `bbrf donaldson`: bispectral matrices, one file per step.
+
+pub(crate) mod separate;
+
+use clap::Subcommand;
+
+use crate::cli::exit::CommandResult;
+
+/// Bispectral matrices: separate, estimate, predict
+#[derive(Debug, clap::Args)]
+pub(crate) struct Arguments {
+    #[command(subcommand)]
+    step: Step,
+}
+
+#[derive(Debug, Subcommand)]
+enum Step {
+    Separate(separate::Arguments),
+}
+
+pub(crate) fn run(arguments: &Arguments) -> CommandResult {
+    match &arguments.step {
+        Step::Separate(arguments) => separate::run(arguments),
+    }
+}
