@@ -3,6 +3,7 @@
 use bbrf::container::tree::{Array, Data, Dataset, Group};
 use bbrf::dataset::*;
 use bbrf::quantity::*;
+use ndarray::s;
 
 use super::{Edit, Fault, id, numbers};
 
@@ -38,6 +39,17 @@ fn axis(measurement: &mut Measurement) -> &mut WavelengthAxis {
     match &mut measurement.emission {
         EmissionAxis::Wavelengths(axis) => axis,
         EmissionAxis::Band { .. } => panic!("the clean measurements have wavelengths"),
+    }
+}
+
+/// The first column of a measurement, as if it were the value of a band.
+fn one_band(measurement: &mut Measurement) {
+    measurement.emission = EmissionAxis::Band { band: Some(Band { from_nm: 500.0, to_nm: 620.0 }) };
+    let first = s![.., 0..1];
+    measurement.values.slice_collapse(first);
+    measurement.flags.slice_collapse(first);
+    if let Some(standard) = &mut measurement.uncertainty.standard {
+        standard.slice_collapse(first);
     }
 }
 
@@ -261,7 +273,7 @@ pub const FAULTS: &[Fault] = &[
     d("quantity.reference-of-kind", "radiance-with", |d| d.measurements[0].quantity.reference = Reference::SameGeometry),
     d("quantity.reference-of-kind", "brdf-with", |d| scan_without_model(d).quantity.kind = QuantityKind::Brdf),
     d("quantity.reference-of-kind", "brrdf-with", |d| density(d).quantity.kind = QuantityKind::Brrdf),
-    d("quantity.donaldson-width", "no-width", |d| axis(matrix(d)).bandpass = Bandpass::Unstated),
+    d("quantity.donaldson-width", "a-band", |d| one_band(matrix(d))),
 
     d("wavelength.positive", "zero", |d| axis(density(d)).nm[0] = 0.0),
     d("wavelength.positive", "negative", |d| axis(density(d)).nm[0] = -360.0),
@@ -273,6 +285,7 @@ pub const FAULTS: &[Fault] = &[
     d("wavelength.bandpass-positive", "zero", |d| bandpass(density(d)).0[0] = 0.0),
     d("wavelength.bandpass-positive", "nan", |d| bandpass(scan_without_model(d)).0[0] = f64::NAN),
     d("wavelength.bandpass-unstated", "of-a-scan", |d| axis(scan_without_model(d)).bandpass = Bandpass::Unstated),
+    d("wavelength.bandpass-unstated", "of-a-matrix", |d| axis(matrix(d)).bandpass = Bandpass::Unstated),
     d("wavelength.bandpass-unstated", "of-a-light", |d| {
         d.lights[0].spectrum.as_mut().expect("a spectrum").axis.bandpass = Bandpass::Unstated;
     }),

@@ -177,8 +177,8 @@ rules! {
         "A factor outside is a percentage, or another quantity.",
         "99 instead of 0.99", "Give the factor as a number of about 1.";
     "BB0210" "quantity.donaldson-width" Error quantity::donaldson_width,
-        "Off the diagonal a Donaldson matrix contains an emission width; without it the numbers have no meaning elsewhere.",
-        "a matrix without `wavelength_emission_fwhm`", "State the width, or store the density per nm.";
+        "Off the diagonal a Donaldson matrix contains the emission width of each wavelength, which a band has not.",
+        "a matrix with one value for 500 to 620 nm", "Store the values of the wavelengths, or a factor of the band.";
 
     "BB0301" "wavelength.positive" Error wavelength::positive,
         "A wavelength is a positive number.", "0 nm", "Correct the axis.";
