@@ -129,6 +129,10 @@ pub fn full() -> Document {
     let covariance = ndarray::stack(ndarray::Axis(0), &tables).unwrap().into_shared();
     let spectral = Model { covariance, ..spectral };
     document.models.extend([Model { id: id("second"), ..model }, of_band, spectral]);
+    for factorisation in &mut document.factorisations {
+        factorisation.title = text();
+        factorisation.findings = vec!["a sentence".to_owned()];
+    }
     document.provenance = provenance();
     document
 }
