@@ -15,6 +15,7 @@
 
 pub mod container;
 pub mod dataset;
+pub mod donaldson;
 pub mod export;
 pub mod fit;
 pub mod import;

@@ -1,0 +1,242 @@
+//! The luminescence of a matrix as a sum of k products excitation x emission, no factor below 0.
+//!
+//! Next to the diagonal reflected light hides the luminescence: those cells are unknown. A mask alone leaves ranks of 2 and
+//! more free to grow there without bound; a weak wish for smooth factors takes that freedom and nothing else.
+
+use nalgebra::{DMatrix, DVector};
+use ndarray::Array2;
+
+use super::nonnegative::{add_roughness, inverse_over, minimise};
+
+/// Weight of the squared second differences, relative to the data's: 1 would be as strong as all of them.
+const SMOOTH: f64 = 1e-3;
+/// Weight that pulls what nothing else determines to 0.
+const RIDGE: f64 = 1e-9;
+/// Passes over both factors.
+const PASSES: usize = 400;
+/// A pass that lowers the cost by less than this is the last.
+const SETTLED: f64 = 1e-10;
+
+/// Factors of the luminescence.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Factors {
+    /// Excitation spectra \[k, excitation\], each 1 at its peak.
+    pub excitation: Array2<f64>,
+    /// Emission spectra \[k, emission\], in the unit of the matrix: its values where the excitation is 1.
+    pub emission: Array2<f64>,
+    /// Standard uncertainties of both, alike: from the residuals, or from those of the data.
+    pub excitation_sigma: Array2<f64>,
+    /// Of the emission.
+    pub emission_sigma: Array2<f64>,
+    /// Root mean square of what is left in the known cells.
+    pub rms: f64,
+    /// Known cells.
+    pub count: usize,
+    /// Covariance of all numbers: excitations of each factor, then emissions.
+    covariance: DMatrix<f64>,
+}
+
+/// Cells that are known, with their weights \[excitation, emission\]; 0 for one that is not.
+pub(super) struct Known<'a> {
+    pub(super) values: &'a Array2<f64>,
+    pub(super) weight: Array2<f64>,
+    /// True where a weight is 1/sigma^2 of the data; otherwise the residuals scale the covariance.
+    pub(super) has_sigma: bool,
+}
+
+impl Factors {
+    /// The best k factors; `None` where the cells do not determine them at all.
+    pub(super) fn of(known: &Known<'_>, k: usize) -> Option<Self> {
+        let mut start: Option<(DMatrix<f64>, DMatrix<f64>)> = None;
+        for rank in 1..=k {
+            let (excitation, emission) = grown(known, start.as_ref(), rank);
+            start = Some(alternate(known, excitation, emission)?);
+        }
+        let (excitation, emission) = start?;
+        complete(known, excitation, emission)
+    }
+
+    /// The luminescence of a cell.
+    #[must_use]
+    pub fn value(&self, excitation: usize, emission: usize) -> f64 {
+        let pairs = self.excitation.column(excitation).into_iter().zip(self.emission.column(emission));
+        pairs.map(|(x, m)| x * m).sum()
+    }
+
+    /// Its standard uncertainty, by the covariance of the factors.
+    #[must_use]
+    pub fn sigma(&self, excitation: usize, emission: usize) -> f64 {
+        let (k, rows) = self.excitation.dim();
+        let columns = self.emission.ncols();
+        let mut gradient = Vec::with_capacity(2 * k);
+        for factor in 0..k {
+            gradient.push((factor * rows + excitation, self.emission[(factor, emission)]));
+            gradient.push((k * rows + factor * columns + emission, self.excitation[(factor, excitation)]));
+        }
+        let pairs = gradient.iter().flat_map(|a| gradient.iter().map(move |b| (a, b)));
+        pairs.map(|((i, a), (j, b))| a * self.covariance[(*i, *j)] * b).sum::<f64>().max(0.0).sqrt()
+    }
+
+    /// How many factors.
+    #[must_use]
+    pub fn rank(&self) -> usize {
+        self.excitation.nrows()
+    }
+}
+
+/// The factors so far and one more, which begins as what they leave above 0.
+fn grown(known: &Known<'_>, start: Option<&(DMatrix<f64>, DMatrix<f64>)>, rank: usize) -> (DMatrix<f64>, DMatrix<f64>) {
+    let (rows, columns) = known.values.dim();
+    let (mut excitation, mut emission) = (DMatrix::zeros(rows, rank), DMatrix::zeros(columns, rank));
+    if let Some((x, m)) = start {
+        excitation.columns_mut(0, rank - 1).copy_from(x);
+        emission.columns_mut(0, rank - 1).copy_from(m);
+    }
+    let mut left = DMatrix::zeros(rows, columns);
+    for ((i, j), weight) in known.weight.indexed_iter().filter(|(_, weight)| **weight > 0.0) {
+        let product = excitation.row(i).dot(&emission.row(j));
+        left[(i, j)] = weight * (known.values[(i, j)] - product).max(0.0);
+    }
+    let last = rank - 1;
+    for i in 0..rows {
+        excitation[(i, last)] = left.row(i).sum();
+    }
+    for j in 0..columns {
+        emission[(j, last)] = left.column(j).sum();
+    }
+    (excitation, emission)
+}
+
+/// Alternates between the best excitations of given emissions and the best emissions of given excitations.
+fn alternate(
+    known: &Known<'_>,
+    mut excitation: DMatrix<f64>,
+    mut emission: DMatrix<f64>,
+) -> Option<(DMatrix<f64>, DMatrix<f64>)> {
+    let turned =
+        Known { values: &known.values.t().to_owned(), weight: known.weight.t().to_owned(), has_sigma: known.has_sigma };
+    let mut before = f64::INFINITY;
+    for _ in 0..PASSES {
+        normalise(&mut excitation, &mut emission);
+        excitation = best(known, &emission)?.0;
+        normalise(&mut excitation, &mut emission);
+        let (better, cost) = best(&turned, &excitation)?;
+        emission = better;
+        if before - cost <= SETTLED * before {
+            break;
+        }
+        before = cost;
+    }
+    normalise(&mut excitation, &mut emission);
+    Some((excitation, emission))
+}
+
+/// Each excitation 1 at its peak.
+fn normalise(excitation: &mut DMatrix<f64>, emission: &mut DMatrix<f64>) {
+    for k in 0..excitation.ncols() {
+        let peak = excitation.column(k).max();
+        if peak > 0.0 {
+            excitation.column_mut(k).scale_mut(peak.recip());
+            emission.column_mut(k).scale_mut(peak);
+        }
+    }
+}
+
+/// The best factor of one side, given that of the other, with its cost.
+fn best(known: &Known<'_>, other: &DMatrix<f64>) -> Option<(DMatrix<f64>, f64)> {
+    let (q, g) = normal(known, other);
+    let found = minimise(&q, &g)?.at;
+    let (rows, k) = (known.values.nrows(), other.ncols());
+    let cost = found.dot(&(&q * &found)) - 2.0 * found.dot(&g);
+    let data: f64 = cells(known).map(|((i, j), weight)| weight * known.values[(i, j)].powi(2)).sum();
+    Some((DMatrix::from_fn(rows, k, |i, c| found[i * k + c]), cost + data))
+}
+
+/// The normal equations of one side: unknowns row by row, k in each.
+fn normal(known: &Known<'_>, other: &DMatrix<f64>) -> (DMatrix<f64>, DVector<f64>) {
+    let (rows, k) = (known.values.nrows(), other.ncols());
+    let mut q = DMatrix::zeros(rows * k, rows * k);
+    let mut g = DVector::zeros(rows * k);
+    for ((i, j), weight) in cells(known) {
+        for a in 0..k {
+            g[i * k + a] += weight * known.values[(i, j)] * other[(j, a)];
+            for b in 0..k {
+                q[(i * k + a, i * k + b)] += weight * other[(j, a)] * other[(j, b)];
+            }
+        }
+    }
+    for a in 0..k {
+        // What a row with every cell would weigh.
+        let whole = mean_weight(known) * other.column(a).norm_squared();
+        add_roughness(&mut q, rows, k, a, SMOOTH * whole);
+        (0..rows).for_each(|i| q[(i * k + a, i * k + a)] += RIDGE * whole.max(f64::MIN_POSITIVE));
+    }
+    (q, g)
+}
+
+fn cells<'a>(known: &'a Known<'_>) -> impl Iterator<Item = ((usize, usize), f64)> + 'a {
+    known.weight.indexed_iter().map(|(at, weight)| (at, *weight)).filter(|(_, weight)| *weight > 0.0)
+}
+
+fn mean_weight(known: &Known<'_>) -> f64 {
+    let (sum, count) = cells(known).fold((0.0, 0), |(sum, count), (_, weight)| (sum + weight, count + 1));
+    sum / f64::from(count.max(1))
+}
+
+/// What is left, and the covariance: the inverse of the curvature of both sides together. The scale between the two sides of
+/// a factor is fixed by the peak of the excitation, which has no uncertainty; neither has what ended at 0.
+fn complete(known: &Known<'_>, excitation: DMatrix<f64>, emission: DMatrix<f64>) -> Option<Factors> {
+    let ((rows, columns), k) = (known.values.dim(), excitation.ncols());
+    let turned =
+        Known { values: &known.values.t().to_owned(), weight: known.weight.t().to_owned(), has_sigma: known.has_sigma };
+    let (q_excitation, _) = normal(known, &emission);
+    let (q_emission, _) = normal(&turned, &excitation);
+    let size = k * (rows + columns);
+    let x = |factor: usize, i: usize| factor * rows + i;
+    let m = |factor: usize, j: usize| k * rows + factor * columns + j;
+    let mut q = DMatrix::zeros(size, size);
+    for a in 0..k {
+        for b in 0..k {
+            for (i, other) in (0..rows).flat_map(|i| (0..rows).map(move |other| (i, other))) {
+                q[(x(a, i), x(b, other))] = q_excitation[(i * k + a, other * k + b)];
+            }
+            for (j, other) in (0..columns).flat_map(|j| (0..columns).map(move |other| (j, other))) {
+                q[(m(a, j), m(b, other))] = q_emission[(j * k + a, other * k + b)];
+            }
+        }
+    }
+    let (mut square, mut sum, mut count) = (0.0, 0.0, 0_usize);
+    for ((i, j), weight) in cells(known) {
+        for (a, b) in (0..k).flat_map(|a| (0..k).map(move |b| (a, b))) {
+            let mixed = weight * emission[(j, a)] * excitation[(i, b)];
+            q[(x(a, i), m(b, j))] += mixed;
+            q[(m(b, j), x(a, i))] += mixed;
+        }
+        let residual = known.values[(i, j)] - excitation.row(i).dot(&emission.row(j));
+        square += residual * residual;
+        sum += weight * residual * residual;
+        count += 1;
+    }
+    let is_free = |index: usize| {
+        let (factor, i) = (index / rows, index % rows);
+        if index < k * rows {
+            excitation[(i, factor)] > 0.0 && i != excitation.column(factor).imax()
+        } else {
+            emission[((index - k * rows) % columns, (index - k * rows) / columns)] > 0.0
+        }
+    };
+    let free: Vec<usize> = (0..size).filter(|index| is_free(*index)).collect();
+    let freedom = (count as f64 - free.len() as f64).max(1.0);
+    let unit = if known.has_sigma { 1.0 } else { sum / freedom };
+    let covariance = inverse_over(&q, &free)? * unit;
+    let deviation = |index: usize| covariance[(index, index)].max(0.0).sqrt();
+    Some(Factors {
+        excitation: Array2::from_shape_fn((k, rows), |(a, i)| excitation[(i, a)]),
+        emission: Array2::from_shape_fn((k, columns), |(a, j)| emission[(j, a)]),
+        excitation_sigma: Array2::from_shape_fn((k, rows), |(a, i)| deviation(x(a, i))),
+        emission_sigma: Array2::from_shape_fn((k, columns), |(a, j)| deviation(m(a, j))),
+        rms: (square / count.max(1) as f64).sqrt(),
+        count,
+        covariance,
+    })
+}

@@ -1,0 +1,95 @@
+//! Which cells hold reflected light beside luminescence, and how noisy a matrix is where no light can be.
+
+use super::Matrix;
+use super::matrix::steps;
+
+/// How many steps below the excitation physics leaves nothing: further than any bandpass and than the thermal tail of the
+/// emission, which reaches some 25 nm.
+const DARK_STEPS: f64 = 3.0;
+/// An offset whose values are this much above the floor in the median holds reflected light.
+const LEAK: f64 = 3.0;
+
+/// Where reflected light is.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Overlap {
+    /// Reflected light reaches cells whose emission is less than this from the excitation, nm, one for each excitation.
+    pub reach_nm: Vec<f64>,
+    /// True where both bandpasses are stated; otherwise it was found in the values below the excitation.
+    pub is_stated: bool,
+}
+
+impl Overlap {
+    /// By the stated bandpasses: triangles of these half widths meet within the sum of both (see
+    /// [`crate::quantity::Cell::is_diagonal`]). Without them, as far below the excitation as the values rise above the floor: what
+    /// is there is no luminescence, and the bandpass is as wide on the other side.
+    #[must_use]
+    pub fn of(matrix: &Matrix) -> Self {
+        if let (Some(excitation), Some(emission)) = (&matrix.excitation_fwhm_nm, &matrix.emission_fwhm_nm) {
+            let widest = emission.iter().copied().fold(0.0, f64::max);
+            return Self { reach_nm: excitation.iter().map(|width| width + widest).collect(), is_stated: true };
+        }
+        let step = median(steps(&matrix.emission_nm)).max(median(steps(&matrix.excitation_nm)));
+        let medians = |from: f64, to: f64| median(below(matrix, from, to).map(|(_, value)| value.abs()).collect());
+        let floor = medians(DARK_STEPS * step, f64::INFINITY);
+        let mut steps_reached = 0.5;
+        // Half a step to either side of each offset.
+        for offset in [1.0, 2.0] {
+            if medians((offset - 0.5) * step, (offset + 0.5) * step) > LEAK * floor {
+                steps_reached = offset + 0.5;
+            } else {
+                break;
+            }
+        }
+        Self { reach_nm: vec![steps_reached * step; matrix.excitation_nm.len()], is_stated: false }
+    }
+
+    /// True where a cell may hold reflected light.
+    #[must_use]
+    pub fn holds(&self, matrix: &Matrix, excitation: usize, emission: usize) -> bool {
+        (matrix.emission_nm[emission] - matrix.excitation_nm[excitation]).abs() < self.reach_nm[excitation]
+    }
+}
+
+/// The noise of a matrix where no light can be: emission well below the excitation.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Floor {
+    /// Root mean square of the values; NaN where there are none.
+    pub rms: f64,
+    /// Their mean: a stray light or an offset that is not subtracted.
+    pub mean: f64,
+    /// How many.
+    pub count: usize,
+}
+
+impl Floor {
+    /// The floor of a matrix.
+    #[must_use]
+    pub fn of(matrix: &Matrix, overlap: &Overlap) -> Self {
+        let step = median(steps(&matrix.emission_nm)).max(median(steps(&matrix.excitation_nm)));
+        let dark = |row: usize| overlap.reach_nm[row].max(DARK_STEPS * step);
+        let values: Vec<f64> = below(matrix, 0.0, f64::INFINITY)
+            .filter(|((row, column), _)| matrix.excitation_nm[*row] - matrix.emission_nm[*column] >= dark(*row))
+            .map(|(_, value)| value)
+            .collect();
+        let count = values.len();
+        let mean = |power: i32| values.iter().map(|value| value.powi(power)).sum::<f64>() / count as f64;
+        Self { rms: mean(2).sqrt(), mean: mean(1), count }
+    }
+}
+
+/// The values whose emission lies that far below their excitation, in nm.
+fn below(matrix: &Matrix, from: f64, to: f64) -> impl Iterator<Item = ((usize, usize), f64)> {
+    matrix.values.indexed_iter().map(|(at, value)| (at, *value)).filter(move |((row, column), value)| {
+        let distance = matrix.excitation_nm[*row] - matrix.emission_nm[*column];
+        value.is_finite() && distance >= from && distance < to && distance > 0.0
+    })
+}
+
+/// The median; NaN of nothing.
+pub(super) fn median(mut values: Vec<f64>) -> f64 {
+    let middle = values.len() / 2;
+    if values.is_empty() {
+        return f64::NAN;
+    }
+    *values.select_nth_unstable_by(middle, f64::total_cmp).1
+}
