@@ -2,6 +2,7 @@
 
 pub(crate) mod convert;
 pub(crate) mod design;
+pub(crate) mod donaldson;
 pub(crate) mod eval;
 pub(crate) mod export;
 pub(crate) mod fit;

@@ -24,6 +24,7 @@ pub(crate) fn all() -> Vec<(&'static str, Schema)> {
         ("convert-model", schema_for!(super::convert::ConvertModelResult)),
         ("design", schema_for!(super::design::DesignResult)),
         ("document", schema_for!(Document)),
+        ("donaldson-predict", schema_for!(super::donaldson::PredictResult)),
         ("eval", schema_for!(super::eval::EvalResult)),
         ("eval-model", schema_for!(crate::cli::model_source::ModelJson)),
         ("fit", schema_for!(super::fit::FitResult)),
