@@ -292,6 +292,7 @@ pub fn clean() -> Document {
         }],
         measurements,
         models: Vec::new(),
+        factorisations: Vec::new(),
         provenance: Provenance {
             receipts: vec![Receipt {
                 tool: "hand".to_owned(),
@@ -312,7 +313,39 @@ pub fn clean() -> Document {
     };
     let model = model(&document);
     document.models.push(model);
+    let factorisation = factorisation(&document);
+    document.factorisations.push(factorisation);
     document
+}
+
+/// What the matrix was made of: one emission spectrum whatever excites it.
+fn factorisation(document: &Document) -> Factorisation {
+    let matrix = document.measurement("matrix").expect("the matrix");
+    let EmissionAxis::Wavelengths(emission) = matrix.emission.clone() else { unreachable!("wavelengths") };
+    let excitation_nm: Vec<f64> = matrix.excitations.iter().filter_map(|state| state.wavelength_nm).collect();
+    let bell = |nm: f64| 0.06 * (-((nm - 540.0) / 25.0_f64).powi(2)).exp();
+    let elastic = |u: f64| emission.nm.iter().map(|nm| if excitation_nm.contains(nm) { u } else { f64::NAN }).collect();
+    let (rows, columns) = ((1, excitation_nm.len()), (1, emission.nm.len()));
+    Factorisation {
+        id: id("factors"),
+        title: None,
+        measurement: matrix.id.clone(),
+        data_digest: measurement_digest(matrix).expect("a storable matrix"),
+        excitation: Array2::from_elem(rows, 1.0).into_shared(),
+        excitation_u: Array2::from_elem(rows, 0.01).into_shared(),
+        emission_factor: Array2::from_shape_fn(columns, |(_, column)| bell(emission.nm[column])).into_shared(),
+        emission_factor_u: Array2::from_elem(columns, 1e-3).into_shared(),
+        elastic: elastic(0.4),
+        elastic_u: elastic(0.01),
+        excitation_nm,
+        emission,
+        reach_nm: 20.0,
+        floor: 1e-3,
+        residual_rms: 1e-3,
+        residual_count: 100,
+        method: "made".to_owned(),
+        findings: Vec::new(),
+    }
 }
 
 /// The terms that the scan was made of, with what they leave on it.

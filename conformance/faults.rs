@@ -3,6 +3,7 @@
 use bbrf::container::tree::{Array, Data, Dataset, Group};
 use bbrf::dataset::*;
 use bbrf::quantity::*;
+use ndarray::s;
 
 use super::{Edit, Fault, id, numbers};
 
@@ -38,6 +39,17 @@ fn axis(measurement: &mut Measurement) -> &mut WavelengthAxis {
     match &mut measurement.emission {
         EmissionAxis::Wavelengths(axis) => axis,
         EmissionAxis::Band { .. } => panic!("the clean measurements have wavelengths"),
+    }
+}
+
+/// The first column of a measurement, as if it were the value of a band.
+fn one_band(measurement: &mut Measurement) {
+    measurement.emission = EmissionAxis::Band { band: Some(Band { from_nm: 500.0, to_nm: 620.0 }) };
+    let first = s![.., 0..1];
+    measurement.values.slice_collapse(first);
+    measurement.flags.slice_collapse(first);
+    if let Some(standard) = &mut measurement.uncertainty.standard {
+        standard.slice_collapse(first);
     }
 }
 
@@ -261,7 +273,7 @@ pub const FAULTS: &[Fault] = &[
     d("quantity.reference-of-kind", "radiance-with", |d| d.measurements[0].quantity.reference = Reference::SameGeometry),
     d("quantity.reference-of-kind", "brdf-with", |d| scan_without_model(d).quantity.kind = QuantityKind::Brdf),
     d("quantity.reference-of-kind", "brrdf-with", |d| density(d).quantity.kind = QuantityKind::Brrdf),
-    d("quantity.donaldson-width", "no-width", |d| axis(matrix(d)).bandpass = Bandpass::Unstated),
+    d("quantity.donaldson-width", "a-band", |d| one_band(matrix(d))),
 
     d("wavelength.positive", "zero", |d| axis(density(d)).nm[0] = 0.0),
     d("wavelength.positive", "negative", |d| axis(density(d)).nm[0] = -360.0),
@@ -273,6 +285,7 @@ pub const FAULTS: &[Fault] = &[
     d("wavelength.bandpass-positive", "zero", |d| bandpass(density(d)).0[0] = 0.0),
     d("wavelength.bandpass-positive", "nan", |d| bandpass(scan_without_model(d)).0[0] = f64::NAN),
     d("wavelength.bandpass-unstated", "of-a-scan", |d| axis(scan_without_model(d)).bandpass = Bandpass::Unstated),
+    d("wavelength.bandpass-unstated", "of-a-matrix", |d| axis(matrix(d)).bandpass = Bandpass::Unstated),
     d("wavelength.bandpass-unstated", "of-a-light", |d| {
         d.lights[0].spectrum.as_mut().expect("a spectrum").axis.bandpass = Bandpass::Unstated;
     }),
@@ -366,6 +379,13 @@ pub const FAULTS: &[Fault] = &[
     d("reference.light", "unknown", |d| density(d).quantity.reference_light = ReferenceLight::Light("d65".into())),
     d("reference.excitation", "beyond-the-end", |d| density(d).acquisitions[0].excitation = Some(6)),
 
+    d("factorisation.shape", "a-row-less", |d| d.factorisations[0].excitation_nm.truncate(5)),
+    d("factorisation.shape", "elastic-short", |d| d.factorisations[0].elastic.truncate(5)),
+    d("factorisation.axis", "descending", |d| d.factorisations[0].excitation_nm[1] = 300.0),
+    d("factorisation.negative", "emission", |d| d.factorisations[0].emission_factor[[0, 3]] = -0.01),
+    d("factorisation.negative", "uncertainty", |d| d.factorisations[0].excitation_u[[0, 0]] = -0.01),
+    d("factorisation.data-changed", "said", |d| d.factorisations[0].data_digest = format!("sha256:{}", "0".repeat(64))),
+    d("reference.dangling", "matrix-of-factors", |d| d.factorisations[0].measurement = id("other")),
     d("model.data-changed", "a-value", |d| scan(d).values[[0, 0]] *= 1.0 + 1e-12),
     d("model.data-changed", "another-digest", |d| d.models[0].data_digest = format!("sha256:{}", "0".repeat(64))),
     d("model.covariance-symmetric", "one-side", |d| d.models[0].covariance[[0, 0, 1]] *= 2.0),

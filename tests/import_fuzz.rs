@@ -18,6 +18,19 @@ fn runner() -> TestRunner {
     TestRunner::new_with_rng(config, TestRng::deterministic_rng(RngAlgorithm::ChaCha))
 }
 
+const ICC: &str = r#"<?xml version="1.0"?><IccProfile><Header><SpectralPCS>bs0006</SpectralPCS><SpectralRange>
+<Wavelengths start="400" end="410" steps="2"/></SpectralRange><BiSpectralRange><Wavelengths start="300" end="320" steps="3"/>
+</BiSpectralRange></Header><Tags><tagArrayType><ArrayTags><tagStructureType><StructureSignature>nmcl</StructureSignature>
+<MemberTags><utf8TextType><TagSignature>name</TagSignature><TextData><![CDATA[Red]]></TextData></utf8TextType>
+<float16NumberType><TagSignature>spec</TagSignature><Data>1 2 3 4 5 -6</Data></float16NumberType></MemberTags>
+</tagStructureType></ArrayTags></tagArrayType></Tags></IccProfile>"#;
+
+const SPDX: &str = r#"<IESTM2714 xmlns="http://www.ies.org/iestm2714" version="1.0"><Header><Manufacturer>Maker</Manufacturer>
+<Description>Lamp</Description></Header><SpectralDistribution><SpectralQuantity>flux</SpectralQuantity>
+<BandwidthFWHM>2.0</BandwidthFWHM><BandwidthCorrected>true</BandwidthCorrected>
+<SpectralData wavelength="400.0">0.034</SpectralData><SpectralData wavelength="403.1">0.037</SpectralData>
+</SpectralDistribution></IESTM2714>"#;
+
 fn valid() -> Vec<String> {
     let columns: String = spectra::grid().map(|nm| format!("{nm};0,{nm}\n")).collect();
     let win: String = spectra::grid().map(|_| "1.0e-5\n").collect();
@@ -31,6 +44,14 @@ fn valid() -> Vec<String> {
          1,2,3,4,500,0.5,\n1,2,3,4,504,,invalid\n"
             .to_owned(),
         "# angles: signed, mirror-at-equal\nfile,record,role,theta_i_deg,theta_v_deg\nspectrum,1,sample,0,10\n".to_owned(),
+        include_str!("../testdata/bispectral/synthetic.BFC").to_owned(),
+        "# quantity: relative-spectrum\n# bandpass-nm: 5\nem\\ex,300,310,320\n400,1,2,3\n410,4,,-6\n".to_owned(),
+        "ex/em\t400\t410\n300\t1,5\t-2\n310\t0\t4\n".to_owned(),
+        ICC.to_owned(),
+        SPDX.to_owned(),
+        "CGATS.17\nINSTRUMENTATION \"i1\"\nNUMBER_OF_FIELDS 4\nBEGIN_DATA_FORMAT\nSAMPLE_ID\tLAB_L\tSPECTRAL_NM380\tnm390\n\
+         END_DATA_FORMAT\nNUMBER_OF_SETS 2\nBEGIN_DATA\n1\t5\t0.1\t0.2\n2\t6\t0.3\t0.4\nEND_DATA\n"
+            .to_owned(),
         "angles = \"full\"\n[[record]]\nfile = \"spectrum\"\nrole = \"white\"\n".to_owned(),
     ]
 }
@@ -113,7 +134,23 @@ fn every_truncation_is_answered() {
 fn long_inputs_take_time_in_proportion() {
     let folder = Folder::new();
     let start = Instant::now();
-    for text in ["\n".repeat(4_000_000), ">".repeat(4_000_000), "1,".repeat(1_000_000), "380 1\n".repeat(300_000)] {
+    let sets: String = (0..20_000).map(|k| format!("{k} 0.1 0.2\n")).collect();
+    let attributes: String = (0..100_000).map(|k| format!(" a{k}=''")).collect();
+    let colour = "<tagStructureType><MemberTags><float32NumberType><TagSignature>spec</TagSignature><Data>1 2 3 4 5 6</Data>\
+                  </float32NumberType></MemberTags></tagStructureType>";
+    for text in [
+        "\n".repeat(4_000_000),
+        ">".repeat(4_000_000),
+        "1,".repeat(1_000_000),
+        "380 1\n".repeat(300_000),
+        format!("CGATS.17\nBEGIN_DATA_FORMAT\nSAMPLE_ID nm380 nm390\nEND_DATA_FORMAT\nBEGIN_DATA\n{sets}END_DATA\n"),
+        "<a>".repeat(500_000),
+        format!("<IESTM2714{attributes}/>"),
+        "<IccProfile xmlns:a='b'>".repeat(50_000),
+        ICC.replace("</ArrayTags>", &format!("{}</ArrayTags>", colour.repeat(3_000))),
+        format!("ex/em,{}\n300,1\n", "400,".repeat(500_000)),
+        "VEC_1\n;\n".repeat(300_000),
+    ] {
         for format in formats() {
             let path = folder.write("input", &text);
             let _ = import(&[path], &Options { format, ..Options::default() });

@@ -321,5 +321,8 @@ fn folders_as_people_keep_them() {
     assert!(error.contains("import the manifest in it"), "{error}");
     assert_eq!(run(manifest).measurements.len(), 1);
     let error = fails(folder.write("bfc.txt", "BFC-450 Matrix File\n1 2 3\n"));
-    assert!(error.contains("a Labsphere BFC matrix"), "{error}");
+    assert!(error.contains("six numbers: emission start"), "{error}");
+    let rows = "bfc.txt,sample,10,20,\n";
+    let error = fails(folder.write("m.csv", format!("{HEAD}{rows}")));
+    assert!(error.contains("a file of the format bfc") && error.contains("on its own"), "{error}");
 }

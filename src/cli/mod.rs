@@ -30,7 +30,7 @@ enum Command {
     Fit(command::fit::Arguments),
     Eval(command::eval::Arguments),
     Design(Box<command::design::Arguments>),
-    Donaldson(command::donaldson::Arguments),
+    Donaldson(Box<command::donaldson::Arguments>),
     Report(command::report::Arguments),
     Info(command::info::Arguments),
     Validate(command::validate::Arguments),

@@ -34,6 +34,7 @@ pub mod name {
     pub const WHITE_REFERENCE: &str = "white_reference";
     pub const MEASUREMENT: &str = "measurement";
     pub const MODEL: &str = "model";
+    pub const FACTORISATION: &str = "factorisation";
     pub const PROVENANCE: &str = "provenance";
     pub const DERIVATION: &str = "derivation";
     pub const SEPARABILITY: &str = "separability";
@@ -137,6 +138,13 @@ pub mod name {
     pub const COVARIANCE_PARAMETERS: &str = "covariance_parameters";
     pub const COVARIANCE_ROW: &str = "covariance_row";
     pub const COVARIANCE_COLUMN: &str = "covariance_column";
+    pub const FACTOR: &str = "factor";
+    pub const WAVELENGTH_EXCITATION: &str = "wavelength_excitation";
+    pub const EXCITATION_FACTOR: &str = "excitation_factor";
+    pub const EMISSION_FACTOR: &str = "emission_factor";
+    pub const ELASTIC: &str = "elastic";
+    pub const REACH: &str = "reach";
+    pub const FLOOR: &str = "floor";
     pub const RESIDUAL_RMS: &str = "residual_rms";
     pub const REDUCED_CHI_SQUARE: &str = "residual_reduced_chi_square";
     pub const RESIDUAL_COUNT: &str = "residual_count";

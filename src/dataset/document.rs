@@ -4,7 +4,9 @@ use std::collections::BTreeSet;
 
 use serde::{Deserialize, Serialize};
 
-use super::{Extension, Id, Instrument, Light, Measurement, Model, Provenance, Sample, ShapeError, WhiteReference};
+use super::{
+    Extension, Factorisation, Id, Instrument, Light, Measurement, Model, Provenance, Sample, ShapeError, WhiteReference,
+};
 
 /// Everything in one file.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, schemars::JsonSchema)]
@@ -39,6 +41,9 @@ pub struct Document {
     /// Fitted models.
     #[serde(default)]
     pub models: Vec<Model>,
+    /// Factors of Donaldson matrices.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub factorisations: Vec<Factorisation>,
     /// Where all that comes from.
     #[serde(default)]
     pub provenance: Provenance,
@@ -89,6 +94,12 @@ impl Document {
         self.models.iter().find(|model| model.id.as_str() == id)
     }
 
+    /// The factorisation of that id.
+    #[must_use]
+    pub fn factorisation(&self, id: &str) -> Option<&Factorisation> {
+        self.factorisations.iter().find(|factorisation| factorisation.id.as_str() == id)
+    }
+
     /// Checks what the types alone cannot: unique ids, references that lead somewhere, arrays that fit.
     ///
     /// # Errors
@@ -100,6 +111,7 @@ impl Document {
         let references = unique("white_references", self.white_references.iter().map(|part| &part.id))?;
         let measurements = unique("measurements", self.measurements.iter().map(|part| &part.id))?;
         unique("models", self.models.iter().map(|part| &part.id))?;
+        unique("factorisations", self.factorisations.iter().map(|part| &part.id))?;
         unique("extensions", self.extensions.iter().map(|part| &part.domain))?;
         for measurement in &self.measurements {
             measurement.check_shape()?;
@@ -118,6 +130,9 @@ impl Document {
         }
         for model in &self.models {
             present(&format!("models/{}", model.id), "measurements", Some(&model.measurement), &measurements)?;
+        }
+        for part in &self.factorisations {
+            present(&format!("factorisations/{}", part.id), "measurements", Some(&part.measurement), &measurements)?;
         }
         Ok(())
     }

@@ -10,8 +10,13 @@ use super::nonnegative::{add_roughness, inverse_over, minimise};
 
 /// Weight of the squared second differences, relative to the data's: 1 would be as strong as all of them.
 const SMOOTH: f64 = 1e-3;
-/// Weight that pulls what nothing else determines to 0.
+/// Weight that pulls what nothing else determines to 0, relative to the data's.
 const RIDGE: f64 = 1e-9;
+/// An excitation spectrum of peak 1 is expected to be about so large where a row says nothing.
+const EXPECTED: f64 = 0.3;
+/// The errors of a row hang together (its dark signal, its monitor): their sum has about so many times the variance of
+/// independent ones. Where a row holds little more than that, its excitation is drawn to 0 and not to what its errors look like.
+const TOGETHER: f64 = 10.0;
 /// Passes over both factors.
 const PASSES: usize = 400;
 /// A pass that lowers the cost by less than this is the last.
@@ -42,6 +47,15 @@ pub(super) struct Known<'a> {
     pub(super) weight: Array2<f64>,
     /// True where a weight is 1/sigma^2 of the data; otherwise the residuals scale the covariance.
     pub(super) has_sigma: bool,
+    /// Variance of a value of weight 1; 0 where it is not known.
+    pub(super) noise: f64,
+}
+
+impl Known<'_> {
+    /// Values and weights with excitation and emission changed over.
+    fn turned(&self) -> (Array2<f64>, Array2<f64>) {
+        (self.values.t().to_owned(), self.weight.t().to_owned())
+    }
 }
 
 impl Factors {
@@ -127,14 +141,14 @@ fn alternate(
     mut excitation: DMatrix<f64>,
     mut emission: DMatrix<f64>,
 ) -> Option<(DMatrix<f64>, DMatrix<f64>)> {
-    let turned =
-        Known { values: &known.values.t().to_owned(), weight: known.weight.t().to_owned(), has_sigma: known.has_sigma };
+    let (values, weight) = known.turned();
+    let turned = Known { values: &values, weight, ..*known };
     let mut before = f64::INFINITY;
     for _ in 0..PASSES {
         normalise(&mut excitation, &mut emission);
-        excitation = best(known, &emission)?.0;
+        excitation = best(known, &emission, pull(known))?.0;
         normalise(&mut excitation, &mut emission);
-        let (better, cost) = best(&turned, &excitation)?;
+        let (better, cost) = best(&turned, &excitation, 0.0)?;
         emission = better;
         if before - cost <= SETTLED * before {
             break;
@@ -143,6 +157,11 @@ fn alternate(
     }
     normalise(&mut excitation, &mut emission);
     Some((excitation, emission))
+}
+
+/// What draws excitations to 0: so strong that a row which holds as much as its errors do is halved.
+fn pull(known: &Known<'_>) -> f64 {
+    TOGETHER * known.noise / EXPECTED.powi(2)
 }
 
 /// Each excitation 1 at its peak.
@@ -157,9 +176,9 @@ fn normalise(excitation: &mut DMatrix<f64>, emission: &mut DMatrix<f64>) {
 }
 
 /// The best factor of one side, given that of the other, with its cost.
-fn best(known: &Known<'_>, other: &DMatrix<f64>) -> Option<(DMatrix<f64>, f64)> {
-    let (q, g) = normal(known, other);
-    let found = minimise(&q, &g)?.at;
+fn best(known: &Known<'_>, other: &DMatrix<f64>, ridge: f64) -> Option<(DMatrix<f64>, f64)> {
+    let (q, g) = normal(known, other, ridge);
+    let found = minimise(&q, &g)?;
     let (rows, k) = (known.values.nrows(), other.ncols());
     let cost = found.dot(&(&q * &found)) - 2.0 * found.dot(&g);
     let data: f64 = cells(known).map(|((i, j), weight)| weight * known.values[(i, j)].powi(2)).sum();
@@ -167,7 +186,7 @@ fn best(known: &Known<'_>, other: &DMatrix<f64>) -> Option<(DMatrix<f64>, f64)> 
 }
 
 /// The normal equations of one side: unknowns row by row, k in each.
-fn normal(known: &Known<'_>, other: &DMatrix<f64>) -> (DMatrix<f64>, DVector<f64>) {
+fn normal(known: &Known<'_>, other: &DMatrix<f64>, ridge: f64) -> (DMatrix<f64>, DVector<f64>) {
     let (rows, k) = (known.values.nrows(), other.ncols());
     let mut q = DMatrix::zeros(rows * k, rows * k);
     let mut g = DVector::zeros(rows * k);
@@ -183,7 +202,7 @@ fn normal(known: &Known<'_>, other: &DMatrix<f64>) -> (DMatrix<f64>, DVector<f64
         // What a row with every cell would weigh.
         let whole = mean_weight(known) * other.column(a).norm_squared();
         add_roughness(&mut q, rows, k, a, SMOOTH * whole);
-        (0..rows).for_each(|i| q[(i * k + a, i * k + a)] += RIDGE * whole.max(f64::MIN_POSITIVE));
+        (0..rows).for_each(|i| q[(i * k + a, i * k + a)] += ridge + RIDGE * whole.max(f64::MIN_POSITIVE));
     }
     (q, g)
 }
@@ -201,10 +220,10 @@ fn mean_weight(known: &Known<'_>) -> f64 {
 /// a factor is fixed by the peak of the excitation, which has no uncertainty; neither has what ended at 0.
 fn complete(known: &Known<'_>, excitation: DMatrix<f64>, emission: DMatrix<f64>) -> Option<Factors> {
     let ((rows, columns), k) = (known.values.dim(), excitation.ncols());
-    let turned =
-        Known { values: &known.values.t().to_owned(), weight: known.weight.t().to_owned(), has_sigma: known.has_sigma };
-    let (q_excitation, _) = normal(known, &emission);
-    let (q_emission, _) = normal(&turned, &excitation);
+    let (values, weight) = known.turned();
+    let turned = Known { values: &values, weight, ..*known };
+    let (q_excitation, _) = normal(known, &emission, pull(known));
+    let (q_emission, _) = normal(&turned, &excitation, 0.0);
     let size = k * (rows + columns);
     let x = |factor: usize, i: usize| factor * rows + i;
     let m = |factor: usize, j: usize| k * rows + factor * columns + j;

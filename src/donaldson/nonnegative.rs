@@ -6,17 +6,8 @@ use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 /// Passes after which the set is taken as it is; it settles in a few tens.
 const PASSES: usize = 2000;
 
-/// The minimum of 1/2 a'Qa - g'a over a >= 0.
-#[derive(Debug, Clone)]
-pub(crate) struct NonNegative {
-    /// The minimum.
-    pub(crate) at: DVector<f64>,
-    /// Numbers that are free: above 0, or 0 by chance.
-    pub(crate) free: Vec<usize>,
-}
-
 /// Minimises 1/2 a'Qa - g'a over a >= 0, for a positive definite Q; `None` where Q is not, or holds what is no number.
-pub(crate) fn minimise(q: &DMatrix<f64>, g: &DVector<f64>) -> Option<NonNegative> {
+pub(crate) fn minimise(q: &DMatrix<f64>, g: &DVector<f64>) -> Option<DVector<f64>> {
     let count = g.len();
     let mut at = DVector::<f64>::zeros(count);
     let mut is_free = vec![true; count];
@@ -33,7 +24,7 @@ pub(crate) fn minimise(q: &DMatrix<f64>, g: &DVector<f64>) -> Option<NonNegative
             let worst = (0..count).filter(|k| !is_free[*k]).max_by(|a, b| slope[*a].total_cmp(&slope[*b]));
             match worst {
                 Some(k) if slope[k] > tolerance => is_free[k] = true,
-                _ => return Some(NonNegative { at, free }),
+                _ => return Some(at),
             }
             continue;
         }
@@ -51,8 +42,7 @@ pub(crate) fn minimise(q: &DMatrix<f64>, g: &DVector<f64>) -> Option<NonNegative
             }
         }
     }
-    let free = (0..count).filter(|k| is_free[*k]).collect();
-    Some(NonNegative { at, free })
+    Some(at)
 }
 
 /// The unconstrained minimum over the free numbers.
@@ -114,11 +104,11 @@ mod tests {
                 let q = root.transpose() * root + DMatrix::identity(count, count) * 1e-6;
                 let g = DVector::from_fn(count, |_, _| random());
                 let found = minimise(&q, &g).unwrap();
-                let slope = &g - &q * &found.at;
+                let slope = &g - &q * &found;
                 for k in 0..count {
-                    assert!(found.at[k] >= 0.0);
-                    let allowed = if found.at[k] > 0.0 { slope[k].abs() } else { slope[k] };
-                    assert!(allowed < 1e-9, "{count}: {k}: {} {}", found.at[k], slope[k]);
+                    assert!(found[k] >= 0.0);
+                    let allowed = if found[k] > 0.0 { slope[k].abs() } else { slope[k] };
+                    assert!(allowed < 1e-9, "{count}: {k}: {} {}", found[k], slope[k]);
                 }
             }
         }
@@ -130,6 +120,6 @@ mod tests {
         assert!(minimise(&q, &DVector::from_vec(vec![1.0, 1.0])).is_none());
         let q = DMatrix::from_row_slice(1, 1, &[f64::NAN]);
         assert!(minimise(&q, &DVector::from_vec(vec![1.0])).is_none());
-        assert_eq!(minimise(&DMatrix::zeros(0, 0), &DVector::zeros(0)).unwrap().at.len(), 0);
+        assert_eq!(minimise(&DMatrix::zeros(0, 0), &DVector::zeros(0)).unwrap().len(), 0);
     }
 }

@@ -50,8 +50,8 @@ pub struct Reradiation {
 enum Common {
     /// Not at all.
     Nothing,
-    /// The luminescence of these cells, times their emission's width in nm, was subtracted to get the elastic part.
-    Subtracted { cells: Array2<bool>, width_nm: Vec<f64> },
+    /// So many times the luminescence of each cell, over its emission's width in nm, was subtracted to get the elastic part.
+    Subtracted { times: Array2<f64>, width_nm: Vec<f64> },
     /// All luminescence is that of the factors, over these widths.
     Factors { factors: Box<Factors>, width_nm: Vec<f64> },
 }
@@ -99,9 +99,17 @@ impl Reradiation {
         let common = match luminescence {
             Luminescence::Factors => Common::Factors { factors: Box::new(factors.clone()), width_nm },
             _ => {
-                let holds =
-                    |(i, j): (usize, usize)| separated.overlap.holds(matrix, i, j) && matrix.values[(i, j)].is_finite();
-                Common::Subtracted { cells: Array2::from_shape_fn(shape, holds), width_nm }
+                let (first, last) = (matrix.excitation_nm[0], matrix.excitation_nm[shape.0 - 1]);
+                let times = |(i, j): (usize, usize)| {
+                    // At the end of the axis a cell stands for its twin on the other side as well.
+                    let twin = 2.0 * matrix.emission_nm[j] - matrix.excitation_nm[i];
+                    match separated.overlap.holds(matrix, i, j) && matrix.values[(i, j)].is_finite() {
+                        true if twin < first || twin > last => 2.0,
+                        true => 1.0,
+                        false => 0.0,
+                    }
+                };
+                Common::Subtracted { times: Array2::from_shape_fn(shape, times), width_nm }
             }
         };
         let mut findings = Vec::new();
@@ -184,11 +192,9 @@ impl Reradiation {
         for ((i, j), sigma) in self.density_sigma.indexed_iter() {
             let (weight, variance) = (excitation[i] * emission[j], known(*sigma).powi(2));
             sum += weight * weight * variance;
-            if let Common::Subtracted { cells, width_nm } = &self.common
-                && cells[(i, j)]
-            {
+            if let Common::Subtracted { times, width_nm } = &self.common {
                 // What was taken from the elastic part is wrong by as much, the other way round.
-                sum -= 2.0 * elastic[j] * weight * width_nm[j] * variance;
+                sum -= 2.0 * times[(i, j)] * elastic[j] * weight * width_nm[j] * variance;
             }
         }
         sum.max(0.0)

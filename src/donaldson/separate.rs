@@ -81,7 +81,7 @@ pub enum NotSeparated {
 pub fn separate(matrix: &Matrix, asked: Separate) -> Result<Separated, NotSeparated> {
     let overlap = Overlap::of(matrix);
     let floor = Floor::of(matrix, &overlap);
-    let known = known(matrix, &overlap);
+    let known = known(matrix, &overlap, floor);
     let clear = known.weight.iter().filter(|weight| **weight > 0.0).count();
     if clear < matrix.excitation_nm.len() + matrix.emission_nm.len() {
         let reach_nm = overlap.reach_nm.iter().copied().fold(0.0, f64::max);
@@ -116,9 +116,16 @@ pub fn separate(matrix: &Matrix, asked: Separate) -> Result<Separated, NotSepara
             matrix.values[*at].is_finite()
                 && (matrix.excitation_nm[at.0] - matrix.emission_nm[column]).abs() <= overlap.reach_nm[at.0] / 2.0
         });
+        // Where the axis of the excitation ends, what its other side would hold is what this side holds.
+        let first_and_last = (matrix.excitation_nm[0], matrix.excitation_nm[shape.0 - 1]);
+        let times = |at: (usize, usize)| {
+            let partner = 2.0 * matrix.emission_nm[column] - matrix.excitation_nm[at.0];
+            if partner < first_and_last.0 || partner > first_and_last.1 { 2.0 } else { 1.0 }
+        };
         let usable = || cells.iter().copied().filter(|at| matrix.values[*at].is_finite());
-        let sum: f64 = usable().map(|at| matrix.values[at] - luminescent[at]).sum();
-        let variance: f64 = usable().map(|at| noise(at).powi(2) + luminescent_sigma[at].powi(2)).sum();
+        let sum: f64 = usable().map(|at| times(at) * (matrix.values[at] - luminescent[at])).sum();
+        let variance: f64 =
+            usable().map(|at| times(at).powi(2) * (noise(at).powi(2) + luminescent_sigma[at].powi(2))).sum();
         elastic.push(if own { sum } else { f64::NAN });
         elastic_sigma.push(if own { variance.sqrt() } else { f64::NAN });
     }
@@ -144,7 +151,7 @@ pub fn separate(matrix: &Matrix, asked: Separate) -> Result<Separated, NotSepara
 }
 
 /// The cells that hold luminescence alone.
-fn known<'a>(matrix: &'a Matrix, overlap: &Overlap) -> Known<'a> {
+fn known<'a>(matrix: &'a Matrix, overlap: &Overlap, floor: Floor) -> Known<'a> {
     let is_clear = |row: usize, column: usize| {
         matrix.emission_nm[column] > matrix.excitation_nm[row] && !overlap.holds(matrix, row, column)
     };
@@ -158,6 +165,11 @@ fn known<'a>(matrix: &'a Matrix, overlap: &Overlap) -> Known<'a> {
         values: &matrix.values,
         weight: Array2::from_shape_fn(matrix.values.dim(), weight),
         has_sigma: matrix.sigma.is_some(),
+        noise: match &matrix.sigma {
+            Some(_) => 1.0,
+            None if floor.rms.is_finite() => floor.rms.powi(2),
+            None => 0.0,
+        },
     }
 }
 

@@ -4,6 +4,9 @@
 //!
 //! *Invariant:* numbers are written so that reading gives the same bits.
 
+pub mod bfc;
+mod grid;
 pub mod json;
+pub mod matrix;
 pub mod table_csv;
 pub mod universal_brdf;

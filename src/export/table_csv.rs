@@ -1,7 +1,7 @@
 //! A measurement as a table CSV: `# key: value` lines, then angles, wavelengths, value, uncertainty and flags, one value
 //! per line. Importing the table gives the same rows; what it cannot hold is listed.
 
-mod head;
+pub(super) mod head;
 mod lost;
 
 use std::collections::BTreeMap;
@@ -126,7 +126,7 @@ fn line(measurement: &Measurement, row: &Acquisition, columns: &Columns, at: (us
 }
 
 /// The shortest text that reads back as the same number; nothing for NaN.
-fn number(value: f64) -> String {
+pub(super) fn number(value: f64) -> String {
     let magnitude = value.abs();
     if value.is_nan() {
         String::new()

@@ -276,7 +276,9 @@ fn covariance(r: &Triangle, norms: &[f64; 4], common: &Common, unit: f64) -> [[f
     let mut x = [[0.0; 3]; 2];
     for i in 0..own {
         for j in 0..4 - own {
-            x[i][j] = (0..own).map(|k| finite_times(inverse[i][k], r[k][own + j])).sum();
+            let follows: f64 = (0..own).map(|k| finite_times(inverse[i][k], r[k][own + j])).sum();
+            // What is rounding follows nothing: an unknown parameter, as the index of a co-located scan, hides none beside it.
+            x[i][j] = if follows.abs() * norms[i] <= 1e-12 * norms[own + j] { 0.0 } else { follows };
         }
     }
     let product =

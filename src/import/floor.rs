@@ -28,7 +28,9 @@ pub(super) struct Found {
 pub(super) fn flag_floor(entries: &mut [Entry]) -> Found {
     // A lamp has an axis and a range of its own; fixed decimals show zeros and no floor.
     let usable = |entry: &&Entry| {
-        entry.role != Role::Lamp && entry.record.rejection.is_none() && entry.record.fixed_decimals.is_none()
+        let record = &entry.record;
+        let measured = entry.role != Role::Lamp && record.rejection.is_none() && !record.is_foreign();
+        measured && record.fixed_decimals.is_none()
     };
     let spectra: Vec<Exposed<'_>> = entries.iter().filter(usable).map(exposed).collect();
     let floor = Floor::of(&spectra);
@@ -63,7 +65,7 @@ pub(super) fn flag_stale(entries: &mut [Entry]) -> Vec<usize> {
         let (before, this) = (&entries[index - 1].record, &entries[index].record);
         let same = before.rejection.is_none() && this.rejection.is_none() && before.values == this.values;
         let dark = this.flags.iter().all(|flags| flags.contains(Flag::BelowDetection));
-        if same && !dark && !this.values.is_empty() && before.nm == this.nm {
+        if same && !this.is_foreign() && !dark && !this.values.is_empty() && before.nm == this.nm {
             copies.push(index);
         }
     }

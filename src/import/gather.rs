@@ -153,13 +153,13 @@ fn as_list(
     options: &Options,
     notes: &mut Notes,
 ) -> Result<(), ImportError> {
-    let role = options.role.unwrap_or(Role::Sample);
     for path in files {
         let records = match known {
             Some(source) => spectra::read(source, options, notes)?,
             None => read(path, options, notes)?,
         };
         for record in records {
+            let role = options.role.or(record.role).unwrap_or(Role::Sample);
             push(plan, record, role, options.geometry, None);
         }
     }

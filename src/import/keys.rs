@@ -8,7 +8,7 @@ use super::details::{self, Detail};
 use super::error::{ImportError, fault, quoted};
 use super::number::value;
 use crate::dataset::Place;
-use crate::quantity::{Band, Basis, NormalisedAt, Part, Quantity, QuantityKind, Reference, ReferenceLight};
+use crate::quantity::{Band, Basis, NormalisedAt, Part, Quantity, QuantityKind, Reference, ReferenceLight, named};
 
 /// What the source or the caller states once. `None` is what nobody stated.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -69,10 +69,22 @@ pub struct Settings {
     pub simulated: Option<bool>,
     /// What a table's uncertainties are multiples of the standard uncertainty by; 1 where nothing is said.
     pub coverage_factor: Option<f64>,
+    /// What the first column of a matrix holds.
+    pub rows: Option<MatrixRows>,
     /// Particulars by the names of the document's fields, as `instrument.distance-mm`.
     pub details: Vec<Detail>,
     /// Where each key was stated, the later ones behind.
     pub places: Vec<(String, Place)>,
+}
+
+named! {
+    /// Which wavelengths stand down the first column of a matrix; the others stand along its first row.
+    MatrixRows, "rows" {
+        /// Each row is an emission wavelength.
+        Emission = "emission",
+        /// Each row is an excitation wavelength.
+        Excitation = "excitation",
+    }
 }
 
 /// Every key, in the spelling of the messages; `_` may stand for `-` and the other way round.
@@ -105,6 +117,7 @@ pub const KEYS: &[&str] = &[
     "time-zone",
     "simulated",
     "coverage-factor",
+    "rows",
 ];
 
 /// Why a key was not taken: what was expected.
@@ -119,16 +132,16 @@ impl Settings {
         let name = canonical(key);
         let text = text.trim();
         match name.as_str() {
-            "quantity" => self.quantity = Some(named(text)?),
-            "part" => self.part = Some(named(text)?),
-            "normalised-at" => self.normalised_at = Some(named(text)?),
-            "basis" => self.basis = Some(named(text)?),
-            "reference" => self.reference = Some(named(text)?),
-            "reference-light" => self.reference_light = Some(named(text)?),
+            "quantity" => self.quantity = Some(member(text)?),
+            "part" => self.part = Some(member(text)?),
+            "normalised-at" => self.normalised_at = Some(member(text)?),
+            "basis" => self.basis = Some(member(text)?),
+            "reference" => self.reference = Some(member(text)?),
+            "reference-light" => self.reference_light = Some(member(text)?),
             "certified-factor" => self.certified_factor = Some(text.to_owned()),
             "certified-relative-uncertainty" => self.certified_relative_uncertainty = Some(positive(text)?),
             "certificate" => self.certificate = Some(text.to_owned()),
-            "angles" => self.angles = Some(named(text)?),
+            "angles" => self.angles = Some(member(text)?),
             "title" => self.title = Some(text.to_owned()),
             "sample" => self.sample = Some(text.to_owned()),
             "material" => self.material = Some(text.to_owned()),
@@ -147,6 +160,7 @@ impl Settings {
             "time-zone" => self.time_zone = Some(text.to_owned()),
             "simulated" => self.simulated = Some(yes_or_no(text)?),
             "coverage-factor" => self.coverage_factor = Some(positive(text)?),
+            "rows" => self.rows = Some(member(text)?),
             _ => return Err(KeyFault::Unknown),
         }
         Ok(())
@@ -243,7 +257,8 @@ impl Settings {
             band,
             time_zone,
             simulated,
-            coverage_factor
+            coverage_factor,
+            rows
         );
         found
     }
@@ -298,7 +313,8 @@ impl Settings {
             band,
             time_zone,
             simulated,
-            coverage_factor
+            coverage_factor,
+            rows
         );
         // What is stated later goes before.
         merged.details.extend(self.details);
@@ -328,7 +344,7 @@ fn is_relative_to_light(kind: QuantityKind) -> bool {
     matches!(kind, Brdf | Brrdf | BispectralLuminescentRadianceFactor | DonaldsonMatrix | RelativeSpectrum)
 }
 
-fn named<T: FromStr<Err = crate::quantity::UnknownName>>(text: &str) -> Result<T, KeyFault> {
+fn member<T: FromStr<Err = crate::quantity::UnknownName>>(text: &str) -> Result<T, KeyFault> {
     text.parse().map_err(|error: crate::quantity::UnknownName| KeyFault::Value(error.expected))
 }
 

@@ -68,6 +68,7 @@ pub(super) fn plan(source: &Source, path: &Path, options: &Options, notes: &mut 
     notes.input(input);
     note_overridden(source, &options.settings, &stated, notes);
     let settings = options.settings.clone().or(&stated);
+    super::refuse_rows(&settings)?;
     if settings.coverage_factor.is_some() {
         return Err(ImportError::Call(fault(
             settings.place_of("coverage-factor", source.at_line(1)),

@@ -1,5 +1,5 @@
 //! Other people's formats, one file each: texts of the PR-650, PR-655 and PR-670, SpectraWin exports, texts of columns,
-//! the table CSV, Universal BRDF JSON, and scans described by a manifest, a name pattern or a scan order. Every import writes a receipt:
+//! spectra in SPDX and CGATS.17, bispectral colours in iccMAX XML, the table CSV, Universal BRDF JSON, Donaldson matrices of the BFC-450, texts of matrices, and scans described by a manifest, a name pattern or a scan order. Every import writes a receipt:
 //! what was read, what was assumed, what could not be filled, what is worth a look.
 //!
 //! *May use:* `dataset`, `quantity`. Not `container`: an import makes a document, and who asked for it writes it.
@@ -22,7 +22,10 @@
 //! ```
 
 mod angles;
+mod bfc;
+mod bispectral;
 mod certificate;
+mod cgats;
 mod columns;
 mod details;
 mod dialect;
@@ -32,10 +35,12 @@ mod floor;
 mod floor_scale;
 mod gather;
 mod geometry_csv;
+mod icc_xml;
 mod keys;
 mod manifest;
 mod manifest_form;
 mod manifest_toml;
+mod matrix;
 mod mean;
 mod names;
 mod noise;
@@ -56,12 +61,15 @@ mod rows;
 mod scan;
 mod scan_order;
 mod source;
+mod spdx;
 mod spectra;
 mod spectrawin;
 pub mod table_csv;
 mod text;
 mod times;
+mod unique;
 pub mod universal_brdf;
+mod xml;
 
 use std::path::{Path, PathBuf};
 
@@ -69,7 +77,7 @@ pub use angles::Angles;
 pub use dialect::Dialect;
 pub use error::{Fault, ImportError};
 pub use geometry_csv::{GeometryRow, read_geometries};
-pub use keys::{KEYS, Settings};
+pub use keys::{KEYS, MatrixRows, Settings};
 pub use manifest_form::scan_manifest;
 pub use source::MAX_FILE_BYTES;
 
@@ -96,13 +104,23 @@ named! {
         ManifestToml = "manifest-toml",
         /// Universal BRDF JSON.
         UniversalBrdf = "universal-brdf",
+        /// Labsphere BFC-450 matrix files.
+        Bfc = "bfc",
+        /// Texts of matrices over excitation and emission.
+        Matrix = "matrix",
+        /// iccMAX profiles as XML, with bispectral colours.
+        IccXml = "icc-xml",
+        /// Spectra in the XML of IES TM-27.
+        Spdx = "spdx",
+        /// Texts of CGATS.17 with spectra.
+        Cgats = "cgats",
     }
 }
 
 impl Format {
     /// True for files that hold spectra and nothing about a scan.
     fn is_spectra(self) -> bool {
-        matches!(self, Self::Pr650 | Self::SpectraWin | Self::Columns)
+        matches!(self, Self::Pr650 | Self::SpectraWin | Self::Columns | Self::Spdx | Self::Cgats)
     }
 }
 
@@ -152,6 +170,7 @@ pub fn import(inputs: &[PathBuf], options: &Options) -> Result<Document, ImportE
         }
         [one] if !one.is_dir() => import_one(one, options, &mut notes)?,
         several => {
+            refuse_rows(&options.settings)?;
             refuse_descriptions(several, options)?;
             scan::assemble(gather::plan(several, None, options, &mut notes)?, options, &mut notes)?
         }
@@ -167,17 +186,33 @@ pub fn import(inputs: &[PathBuf], options: &Options) -> Result<Document, ImportE
 
 fn import_one(path: &Path, options: &Options, notes: &mut Notes) -> Result<Document, ImportError> {
     let source = Source::read(path, &path.display().to_string())?;
-    match options.format.unwrap_or_else(|| spectra::sniff(&source)) {
+    let format = options.format.unwrap_or_else(|| spectra::sniff(&source));
+    if format != Format::Matrix {
+        refuse_rows(&options.settings)?;
+    }
+    match format {
         Format::TableCsv => {
-            refuse_file_options(options, "a table")?;
+            refuse_file_options(options, "a table", false)?;
             table_csv::document(&source, options, notes)
         }
         Format::UniversalBrdf => {
-            refuse_file_options(options, "a Universal BRDF file")?;
+            refuse_file_options(options, "a Universal BRDF file", false)?;
             universal_brdf::document(&source, options, notes)
         }
+        Format::Bfc => {
+            refuse_file_options(options, "a matrix", true)?;
+            bfc::document(&source, options, notes)
+        }
+        Format::IccXml => {
+            refuse_file_options(options, "a matrix", true)?;
+            icc_xml::document(&source, options, notes)
+        }
+        Format::Matrix => {
+            refuse_file_options(options, "a matrix", true)?;
+            matrix::document(&source, options, notes)
+        }
         Format::Manifest | Format::ManifestToml => {
-            refuse_file_options(options, "a manifest")?;
+            refuse_file_options(options, "a manifest", false)?;
             scan::assemble(manifest::plan(&source, path, options, notes)?, options, notes)
         }
         _ => scan::assemble(gather::plan(&[path.to_path_buf()], Some(&source), options, notes)?, options, notes),
@@ -185,8 +220,8 @@ fn import_one(path: &Path, options: &Options, notes: &mut Notes) -> Result<Docum
 }
 
 /// A manifest says which files have which role: naming some in the call as well would be two truths. So do a table and a
-/// file of points.
-fn refuse_file_options(options: &Options, what: &str) -> Result<(), ImportError> {
+/// file of points; a matrix has `one_geometry` for all its values, which the call may say.
+fn refuse_file_options(options: &Options, what: &str, one_geometry: bool) -> Result<(), ImportError> {
     let given = [
         ("--pattern", options.pattern.is_some()),
         ("--scan-order", options.scan_order.is_some()),
@@ -194,7 +229,7 @@ fn refuse_file_options(options: &Options, what: &str) -> Result<(), ImportError>
         ("--dark", !options.dark.is_empty()),
         ("--lamp", !options.lamp.is_empty()),
         ("--role", options.role.is_some()),
-        ("--geometry", options.geometry.is_some()),
+        ("--geometry", options.geometry.is_some() && !one_geometry),
         ("--repeats", options.repeats),
     ];
     let Some((option, _)) = given.into_iter().find(|(_, given)| *given) else { return Ok(()) };
@@ -203,6 +238,19 @@ fn refuse_file_options(options: &Options, what: &str) -> Result<(), ImportError>
         format!("{option} with {what}"),
         "roles and geometries in one place",
         "say it in the file",
+    )))
+}
+
+/// Which wavelengths stand down the first column is a question of matrices alone; elsewhere the answer would be dropped.
+fn refuse_rows(settings: &Settings) -> Result<(), ImportError> {
+    if settings.rows.is_none() {
+        return Ok(());
+    }
+    Err(ImportError::Call(fault(
+        settings.place_of("rows", Place::file("the call")),
+        "the key `rows` without a matrix",
+        "a text with wavelengths along its first row and first column",
+        "leave it out, or force `--format matrix`",
     )))
 }
 

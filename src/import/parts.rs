@@ -17,12 +17,16 @@ pub(super) fn document(settings: &Settings) -> Document {
     }
 }
 
-/// The bandpass that the caller states, else the one that the instrument reported.
-pub(super) fn bandpass(settings: &Settings, reported_nm: Option<f64>) -> Bandpass {
-    settings.bandpass_nm.or(reported_nm).map_or(Bandpass::Unstated, |fwhm| Bandpass::Stated {
+/// The bandpass that the caller states, else the one that the source reports.
+pub(super) fn bandpass(settings: &Settings, reported: Option<&Details>) -> Bandpass {
+    let of_source = reported.and_then(|details| {
+        Some((details.bandpass_nm?, details.bandpass_correction.unwrap_or(BandpassCorrection::Unstated)))
+    });
+    let stated = settings.bandpass_nm.map(|fwhm| (fwhm, BandpassCorrection::Unstated));
+    stated.or(of_source).map_or(Bandpass::Unstated, |(fwhm, correction)| Bandpass::Stated {
         fwhm_nm: vec![fwhm],
         shape: BandpassShape::Unstated,
-        correction: BandpassCorrection::Unstated,
+        correction,
     })
 }
 

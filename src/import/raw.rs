@@ -1,5 +1,8 @@
 //! Raw measurements and lights, as the records give them.
 
+use std::collections::BTreeMap;
+use std::path::Path;
+
 use ndarray::Array2;
 
 use super::keys::Settings;
@@ -9,6 +12,7 @@ use super::plan::{Entry, Plan, first_record};
 use super::receipt::Notes;
 use super::record::Record;
 use super::times;
+use super::unique::UniqueIds;
 use crate::dataset::{Acquisition, Conditions, Id, Light, LightSpectrum, Measurement, Role};
 use crate::quantity::{
     Component, CorrelatedOver, EmissionAxis, Flag, Flags, Part, Quantity, QuantityKind, Uncertainty, WavelengthAxis,
@@ -20,7 +24,7 @@ pub(super) fn lights<'a>(plan: &'a Plan, notes: &mut Notes) -> Vec<(Light, &'a E
     for entry in plan.of(Role::Lamp) {
         let record = &entry.record;
         let name = entry.light.as_deref().or(record.title.as_deref()).unwrap_or("lamp");
-        let axis = WavelengthAxis::new(record.nm.clone(), parts::bandpass(&plan.settings, record.details.bandpass_nm));
+        let axis = WavelengthAxis::new(record.nm.clone(), parts::bandpass(&plan.settings, Some(&record.details)));
         let spectrum = axis.ok().filter(|_| record.rejection.is_none()).map(|axis| LightSpectrum {
             quantity: quantity(record, &plan.settings),
             axis,
@@ -33,14 +37,16 @@ pub(super) fn lights<'a>(plan: &'a Plan, notes: &mut Notes) -> Vec<(Light, &'a E
                 notes.unfilled(format!("lights/{id}/spectrum/quantity/{field}"));
             }
         }
-        lights.push((Light { id, title: Some(name.to_owned()), spectrum, ..Light::default() }, entry));
+        let make = record.details.make.clone();
+        lights.push((Light { id, title: Some(name.to_owned()), make, spectrum, ..Light::default() }, entry));
     }
     lights
 }
 
 /// What the numbers of a record are.
 pub(super) fn quantity(record: &Record, settings: &Settings) -> Quantity {
-    if record.dialect == "columns" || record.kind == QuantityKind::Unstated {
+    use QuantityKind::{RelativeSpectrum, Unstated};
+    if record.dialect == "columns" || matches!(record.kind, Unstated | RelativeSpectrum) {
         return Quantity {
             kind: record.kind,
             ..Settings { quantity: Some(record.kind), ..settings.clone() }.quantity()
@@ -98,30 +104,21 @@ type Named<'a> = (&'a str, Option<&'a str>, Vec<(usize, &'a Entry)>);
 /// Groups of records: those of one file together, records with a name of their own apart. Ids from the names.
 fn by_file<'a>(entries: &[(usize, &'a Entry)]) -> Vec<(Id, Vec<(usize, &'a Entry)>)> {
     let mut groups: Vec<Named<'_>> = Vec::new();
+    let mut known = BTreeMap::new();
     for (index, entry) in entries {
-        let (file, title) = (entry.record.file.as_str(), entry.record.title.as_deref());
-        match groups.iter_mut().find(|(known, name, _)| (*known, *name) == (file, title)) {
+        let name = (entry.record.file.as_str(), entry.record.title.as_deref());
+        let at = *known.entry(name).or_insert(groups.len());
+        match groups.get_mut(at) {
             Some((_, _, group)) => group.push((*index, *entry)),
-            None => groups.push((file, title, vec![(*index, *entry)])),
+            None => groups.push((name.0, name.1, vec![(*index, *entry)])),
         }
     }
-    let mut taken = std::collections::BTreeSet::new();
-    let unique = |file: &str, title: Option<&str>| {
-        let stem =
-            std::path::Path::new(file).file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into());
-        let base = title.map_or_else(|| Id::from_title(&stem), Id::from_title);
-        let mut id = base.clone();
-        for number in 2_u32.. {
-            if taken.insert(id.clone()) {
-                break;
-            }
-            let short: String = base.as_str().chars().take(52).collect();
-            id = Id::from_title(&format!("{short}-{number}"));
-        }
-        id
+    let mut ids = UniqueIds::default();
+    let mut id = |file: &str, title: Option<&str>| {
+        let stem = Path::new(file).file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into());
+        ids.of(title.unwrap_or(&stem))
     };
-    let mut unique = unique;
-    groups.into_iter().map(|(file, title, group)| (unique(file, title), group)).collect()
+    groups.into_iter().map(|(file, title, group)| (id(file, title), group)).collect()
 }
 
 /// The raw measurement of some entries; `None` where none of them holds data and so no axis is known.
@@ -134,8 +131,7 @@ fn measurement(
 ) -> Option<Measurement> {
     let all = plan.entries.iter().filter(|entry| entry.role != Role::Lamp);
     let record = first_record(entries.iter().map(|(_, entry)| *entry)).or_else(|| first_record(all))?;
-    let axis =
-        WavelengthAxis::new(record.nm.clone(), parts::bandpass(&plan.settings, record.details.bandpass_nm)).ok()?;
+    let axis = WavelengthAxis::new(record.nm.clone(), parts::bandpass(&plan.settings, Some(&record.details))).ok()?;
     let shape = (entries.len(), axis.nm.len());
     let mut values = Array2::from_elem(shape, f64::NAN);
     let mut flags = Array2::from_elem(shape, 0_u16);

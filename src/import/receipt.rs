@@ -1,5 +1,7 @@
 //! The receipt while it is being written.
 
+use std::collections::BTreeSet;
+
 use crate::dataset::{Assumption, InputFile, Notice, Place, Receipt};
 
 /// More notices of one kind than this are counted and not listed one by one.
@@ -9,6 +11,8 @@ pub(crate) const LISTED: usize = 20;
 #[derive(Debug, Default)]
 pub(crate) struct Notes {
     receipt: Receipt,
+    /// The unfilled fields once more: of thousands of samples, each has some.
+    unfilled: BTreeSet<String>,
 }
 
 impl Notes {
@@ -32,7 +36,7 @@ impl Notes {
     /// A field of the document that stays empty.
     pub(crate) fn unfilled(&mut self, path: impl Into<String>) {
         let path = path.into();
-        if !self.receipt.unfilled.contains(&path) {
+        if self.unfilled.insert(path.clone()) {
             self.receipt.unfilled.push(path);
         }
     }

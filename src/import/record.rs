@@ -2,8 +2,8 @@
 
 use super::error::{ImportError, fault};
 use super::number::Printed;
-use crate::dataset::Place;
-use crate::quantity::{Flag, Flags, QuantityKind};
+use crate::dataset::{Place, Role};
+use crate::quantity::{BandpassCorrection, Flag, Flags, QuantityKind};
 
 /// What the input says about the instrument's state when the record was taken.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -22,6 +22,10 @@ pub(crate) struct Details {
     pub(crate) exposure_ms: Option<f64>,
     /// Bandpass that the instrument reported, nm.
     pub(crate) bandpass_nm: Option<f64>,
+    /// Whether the values are corrected for it.
+    pub(crate) bandpass_correction: Option<BandpassCorrection>,
+    /// Make and model of the light, where the record is of one.
+    pub(crate) make: Option<String>,
 }
 
 /// One spectrum.
@@ -51,6 +55,8 @@ pub(crate) struct Record {
     pub(crate) quality: Option<i32>,
     /// Why the record is no measurement: the reason as a flag, and in words.
     pub(crate) rejection: Option<(Flag, String)>,
+    /// What it is of, where the input itself says it.
+    pub(crate) role: Option<Role>,
     /// What the numbers are.
     pub(crate) kind: QuantityKind,
     /// About the instrument.
@@ -77,6 +83,7 @@ impl Record {
             fixed_decimals: None,
             quality: None,
             rejection: None,
+            role: None,
             kind: QuantityKind::Unstated,
             details: Details::default(),
             doubts: Vec::new(),
@@ -128,8 +135,16 @@ impl Record {
 
     /// True for spectra of the PR-6xx family, or on its grid.
     pub(crate) fn is_pr650_like(&self) -> bool {
+        if self.is_foreign() {
+            return false;
+        }
         self.details.model.as_ref().is_some_and(|model| model.to_ascii_uppercase().contains("PR-6"))
             || self.is_on_pr650_grid()
+    }
+
+    /// True for formats of other instruments, or of none: floor, old buffers and noise of the PR-650 are not theirs.
+    pub(crate) fn is_foreign(&self) -> bool {
+        matches!(self.dialect, "spdx" | "cgats")
     }
 
     /// Integral over wavelength by the rectangle rule of the instrument, in the unit of the values times nm.

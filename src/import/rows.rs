@@ -43,26 +43,35 @@ pub(crate) fn header_line(source: &Source) -> Option<(u64, &str)> {
     source.text.lines().find(|line| !line.text.trim_start().starts_with('#')).map(|line| (line.number, line.text))
 }
 
+/// Reads the `# key: value` lines above the header into `settings`.
+///
+/// # Errors
+/// [`ImportError`] with the line for other comments, unknown keys, and one key with two values.
+pub(crate) fn keys_above(source: &Source, settings: &mut Settings) -> Result<(), ImportError> {
+    let mut taken = Vec::new();
+    for line in source.text.lines().take_while(|line| line.text.trim_start().starts_with('#')) {
+        match key_line(line.text) {
+            Some((key, text)) => settings.take_once(key, text, source.at_line(line.number), &mut taken)?,
+            None => {
+                return Err(ImportError::Call(fault(
+                    source.at_line(line.number),
+                    format!("the comment {}", quoted(line.text.trim())),
+                    "`# key: value`",
+                    "say it as `# title: ...`, or take the line out: nothing is passed over",
+                )));
+            }
+        }
+    }
+    Ok(())
+}
+
 impl Rows {
     /// Reads the keys into `settings` and the rows of a CSV text. `known` are the columns that it may have.
     ///
     /// # Errors
     /// [`ImportError`] with the line for unknown keys and columns, doubled columns, and rows of another length.
     pub(crate) fn from_csv(source: &Source, settings: &mut Settings, known: &[&str]) -> Result<Self, ImportError> {
-        let mut taken = Vec::new();
-        for line in source.text.lines().take_while(|line| line.text.trim_start().starts_with('#')) {
-            match key_line(line.text) {
-                Some((key, text)) => settings.take_once(key, text, source.at_line(line.number), &mut taken)?,
-                None => {
-                    return Err(ImportError::Call(fault(
-                        source.at_line(line.number),
-                        format!("the comment {}", quoted(line.text.trim())),
-                        "`# key: value`",
-                        "say it as `# title: ...`, or take the line out: nothing is passed over",
-                    )));
-                }
-            }
-        }
+        keys_above(source, settings)?;
         let Some((first, names)) = header_line(source) else {
             return Err(ImportError::Malformed(fault(
                 source.at_line(1),

@@ -4,7 +4,7 @@ use super::error::{ImportError, fault};
 use super::receipt::{LISTED, Notes};
 use super::record::Record;
 use super::source::Source;
-use super::{Format, Options, columns, pr650, pr650_line, spectrawin};
+use super::{Format, Options, bfc, cgats, columns, icc_xml, matrix, pr650, pr650_line, spdx, spectrawin};
 use crate::dataset::Place;
 use crate::quantity::{QuantityKind, luminous_efficacy};
 
@@ -16,6 +16,18 @@ pub(super) fn sniff(source: &Source) -> Format {
     if super::universal_brdf::is_one(&source.text.content) {
         return Format::UniversalBrdf;
     }
+    if icc_xml::is_one(source) {
+        return Format::IccXml;
+    }
+    if spdx::is_one(source) {
+        return Format::Spdx;
+    }
+    if cgats::is_one(source) {
+        return Format::Cgats;
+    }
+    if bfc::is_one(source) {
+        return Format::Bfc;
+    }
     let header = super::rows::header_line(source).map_or("", |(_, text)| text).to_ascii_lowercase();
     let columns: Vec<&str> = header.split([',', ';']).map(|name| name.trim().trim_matches('"').trim()).collect();
     let toml = source.name.to_ascii_lowercase().ends_with(".toml") || header.trim() == "[[record]]";
@@ -25,6 +37,8 @@ pub(super) fn sniff(source: &Source) -> Format {
         Format::Manifest
     } else if columns.contains(&"value") && TABLE_COLUMNS.iter().any(|column| columns.contains(column)) {
         Format::TableCsv
+    } else if matrix::is_one(source) {
+        Format::Matrix
     } else if spectrawin::is_full(source) {
         Format::SpectraWin
     } else if source.text.lines().take(20).any(|line| pr650_line::starts_capture(line.text)) {
@@ -42,10 +56,12 @@ pub(super) fn sniff(source: &Source) -> Format {
 /// [`ImportError`] of the parser.
 pub(super) fn read(source: &Source, options: &Options, notes: &mut Notes) -> Result<Vec<Record>, ImportError> {
     let format = options.format.filter(|format| format.is_spectra()).unwrap_or_else(|| sniff(source));
-    refuse_unread(source)?;
+    refuse_unread(source, format)?;
     let mut dialect = None;
     let mut records = match format {
         Format::Pr650 => pr650::parse(source, options)?,
+        Format::Spdx => vec![spdx::parse(source)?],
+        Format::Cgats => cgats::parse(source, notes)?,
         Format::SpectraWin => {
             let (record, unread) = spectrawin::parse(source, options)?;
             note_unread(source, &unread, notes);
@@ -72,18 +88,14 @@ pub(super) fn read(source: &Source, options: &Options, notes: &mut Notes) -> Res
     Ok(records)
 }
 
-/// Formats that are known and not read, so that nobody looks for a fault in the file.
-fn refuse_unread(source: &Source) -> Result<(), ImportError> {
+/// Formats that are known and hold no spectra, so that nobody looks for a fault in the file.
+fn refuse_unread(source: &Source, format: Format) -> Result<(), ImportError> {
     let starts = |text: &str| source.text.lines().take(20).any(|line| line.text.trim_start().starts_with(text));
     let refused = |found: &str, expected: &str, advice: &str| {
         Err(ImportError::Malformed(fault(source.at_line(1), found, expected, advice)))
     };
-    if starts("VEC_") || starts("BFC-450 Matrix File") {
-        return refused(
-            "a Labsphere BFC matrix, which this version does not read",
-            "spectra, a table or a manifest",
-            "write it as a table CSV with the columns excitation_nm, emission_nm and value",
-        );
+    if matches!(format, Format::Bfc | Format::IccXml | Format::UniversalBrdf) {
+        return refused(&format!("a file of the format {format}"), "spectra", "import it on its own");
     }
     if starts("[HEADER]") && !spectrawin::is_full(source) {
         return refused(

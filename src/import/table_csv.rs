@@ -51,7 +51,7 @@ use super::receipt::Notes;
 use super::rows::{Row, Rows};
 use super::source::Source;
 use super::{Options, scan};
-use crate::dataset::{Acquisition, Conditions, Document, Id, Measurement, Role};
+use crate::dataset::{Acquisition, Conditions, Document, Id, Measurement, Place, Role};
 use crate::quantity::{EmissionAxis, Finite, Flag, Flags, Statement, Uncertainty, WavelengthAxis};
 
 pub(super) const COLUMNS: &[&str] = &[
@@ -92,6 +92,7 @@ pub(super) fn document(source: &Source, options: &Options, notes: &mut Notes) ->
     let rows = Rows::from_csv(source, &mut settings, COLUMNS)?;
     note_overridden(source, &options.settings, &settings, notes);
     let settings = options.settings.clone().or(&settings);
+    super::refuse_rows(&settings)?;
     if !rows.has("value") {
         return Err(ImportError::Malformed(fault(
             source.at_line(rows.header),
@@ -118,7 +119,7 @@ pub(super) fn document(source: &Source, options: &Options, notes: &mut Notes) ->
 }
 
 /// A fluorescent sheet radiates a few times what the perfect diffuser does, not tens of times.
-fn note_percent(source: &Source, measurement: &Measurement, notes: &mut Notes) {
+pub(super) fn note_percent(source: &Source, measurement: &Measurement, notes: &mut Notes) {
     const IMPLAUSIBLE: f64 = 10.0;
     let mut values: Vec<f64> = measurement.values.iter().copied().filter(|value| value.is_finite()).collect();
     values.sort_by(f64::total_cmp);
@@ -282,7 +283,7 @@ impl Table {
             flags[at] = cell.flags.0;
         }
         let mut quantity = settings.quantity();
-        quantity.certified_factor = certified(settings, source)?;
+        quantity.certified_factor = certified(settings, &source.at_line(1))?;
         let expanded = settings.coverage_factor.filter(|factor| *factor != 1.0);
         if let Some(factor) = expanded {
             sigma.mapv_inplace(|sigma| sigma / factor);
@@ -329,12 +330,13 @@ fn doubled(source: &Source, line: u64, before: u64) -> ImportError {
     ))
 }
 
-fn certified(settings: &Settings, source: &Source) -> Result<Vec<f64>, ImportError> {
+/// The certified factor as the one number that finished values can have; `place` where it is not stated.
+pub(super) fn certified(settings: &Settings, place: &Place) -> Result<Vec<f64>, ImportError> {
     let Some(text) = &settings.certified_factor else { return Ok(Vec::new()) };
     value(text).map(|factor| vec![factor]).ok_or_else(|| {
         ImportError::Call(fault(
-            settings.place_of("certified-factor", source.at_line(1)),
-            format!("{} as the certified factor of a table", quoted(text)),
+            settings.place_of("certified-factor", place.clone()),
+            format!("{} as the certified factor of finished values", quoted(text)),
             "one number",
             "state one number, or leave the key out",
         ))

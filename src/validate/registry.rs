@@ -3,8 +3,8 @@
 use super::Context;
 use super::finding::{Finder, Severity};
 use super::rules::{
-    acquisition, albedo, bytes, calibration, digest, flags, geometry, light, model, physics, portability, provenance,
-    quantity, reference, structure, uncertainty, wavelength,
+    acquisition, albedo, bytes, calibration, digest, factorisation, flags, geometry, light, model, physics,
+    portability, provenance, quantity, reference, structure, uncertainty, wavelength,
 };
 
 /// A rule.
@@ -43,6 +43,7 @@ pub const CLAUSES: &[(u8, &str, &str)] = &[
     (13, "portability", "Encoding"),
     (14, "provenance", "Provenance"),
     (15, "light", "Lights"),
+    (16, "factorisation", "Factors of matrices"),
 ];
 
 impl Rule {
@@ -176,8 +177,8 @@ rules! {
         "A factor outside is a percentage, or another quantity.",
         "99 instead of 0.99", "Give the factor as a number of about 1.";
     "BB0210" "quantity.donaldson-width" Error quantity::donaldson_width,
-        "Off the diagonal a Donaldson matrix contains an emission width; without it the numbers have no meaning elsewhere.",
-        "a matrix without `wavelength_emission_fwhm`", "State the width, or store the density per nm.";
+        "Off the diagonal a Donaldson matrix contains the emission width of each wavelength, which a band has not.",
+        "a matrix with one value for 500 to 620 nm", "Store the values of the wavelengths, or a factor of the band.";
 
     "BB0301" "wavelength.positive" Error wavelength::positive,
         "A wavelength is a positive number.", "0 nm", "Correct the axis.";
@@ -456,4 +457,16 @@ rules! {
     "BB1406" "light.covers-emission" Warning light::covers_emission,
         "What a surface reflects at a wavelength is known for another light only where the spectrum of this one is known there.",
         "a lamp known from 400 to 700 nm, factors from 380 to 780 nm", "Measure the light over the emission axis, or leave the ends of that out.";
+
+    "BB1501" "factorisation.shape" Error factorisation::shape,
+        "Factors are spectra on the axes of their group.", "49 excitations and a factor of 48 values",
+        "Separate the matrix again.";
+    "BB1502" "factorisation.axis" Error factorisation::axis,
+        "Excitation wavelengths ascend.", "310 nm after 320 nm", "Separate the matrix again.";
+    "BB1503" "factorisation.negative" Error factorisation::negative,
+        "Neither absorption nor emission is negative, and no standard uncertainty is.", "-0.01 in an excitation spectrum",
+        "Separate the matrix again.";
+    "BB1504" "factorisation.data-changed" Warning factorisation::data_changed,
+        "Factors describe the matrix that they were made of.", "a matrix edited after its separation",
+        "Separate the matrix again.";
 }

@@ -248,6 +248,7 @@ struct Names {
     references: Vec<Id>,
     measurements: Vec<Id>,
     models: Vec<Id>,
+    factorisations: Vec<Id>,
 }
 
 fn derivation(measurements: &[Id]) -> impl Strategy<Value = Derivation> + use<> {
@@ -482,6 +483,39 @@ fn provenance() -> impl Strategy<Value = Provenance> {
 }
 
 /// One part for each id.
+fn factorisation(id: Id, measurements: &[Id]) -> impl Strategy<Value = Factorisation> + use<> {
+    let measurements = measurements.to_vec();
+    (0_usize..3, 0_usize..4, wavelengths()).prop_flat_map(move |(k, rows, emission)| {
+        let columns = emission.nm.len();
+        let arrays = (matrix(k, rows), matrix(k, rows), matrix(k, columns), matrix(k, columns));
+        let lists = (vec(number(), rows), vec(number(), columns), vec(number(), columns));
+        let rest = (of(text()), select(measurements.clone()), text(), text(), vec(text(), 0..3));
+        let id = id.clone();
+        (arrays, lists, rest, (number(), number(), number(), any::<u64>())).prop_map(
+            move |(arrays, lists, rest, numbers)| Factorisation {
+                id: id.clone(),
+                title: rest.0,
+                measurement: rest.1,
+                data_digest: rest.2,
+                excitation_nm: lists.0,
+                emission: emission.clone(),
+                excitation: arrays.0.into_shared(),
+                excitation_u: arrays.1.into_shared(),
+                emission_factor: arrays.2.into_shared(),
+                emission_factor_u: arrays.3.into_shared(),
+                elastic: lists.1,
+                elastic_u: lists.2,
+                reach_nm: numbers.0,
+                floor: numbers.1,
+                residual_rms: numbers.2,
+                residual_count: numbers.3,
+                method: rest.3,
+                findings: rest.4,
+            },
+        )
+    })
+}
+
 fn parts<T: std::fmt::Debug + 'static, S: Strategy<Value = T> + 'static>(
     ids: &[Id],
     part: impl Fn(Id) -> S,
@@ -491,10 +525,11 @@ fn parts<T: std::fmt::Debug + 'static, S: Strategy<Value = T> + 'static>(
 
 /// Any consistent document.
 pub fn document() -> impl Strategy<Value = Document> {
-    let all = (names(), names(), names(), names(), names(), names());
-    all.prop_flat_map(|(samples, instruments, lights, references, measurements, models)| {
+    let all = (names(), names(), names(), names(), names(), names(), names());
+    all.prop_flat_map(|(samples, instruments, lights, references, measurements, models, factorisations)| {
         let models = if measurements.is_empty() { vec![] } else { models };
-        let names = Names { samples, instruments, lights, references, measurements, models };
+        let factorisations = if measurements.is_empty() { vec![] } else { factorisations };
+        let names = Names { samples, instruments, lights, references, measurements, models, factorisations };
         let head = (of(text()), of(text()), of(text()), of(text()), provenance());
         let extensions = vec(name(), 0..2).prop_flat_map(|mut names| {
             names.sort();
@@ -508,6 +543,7 @@ pub fn document() -> impl Strategy<Value = Document> {
             parts(&names.references, white_reference),
             parts(&names.measurements, |id| measurement(id, &names)),
             parts(&names.models, |id| model(id, &names.measurements)),
+            parts(&names.factorisations, |id| factorisation(id, &names.measurements)),
         );
         (head, parts, extensions)
     })
@@ -522,6 +558,7 @@ pub fn document() -> impl Strategy<Value = Document> {
         white_references: parts.3,
         measurements: parts.4,
         models: parts.5,
+        factorisations: parts.6,
         provenance,
         extensions,
     })

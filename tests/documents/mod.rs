@@ -136,7 +136,8 @@ pub fn small() -> Document {
             ..WhiteReference::default()
         }],
         measurements: vec![raw, scan],
-        models: vec![model(data_digest)],
+        models: vec![model(data_digest.clone())],
+        factorisations: vec![factorisation(data_digest)],
         provenance: provenance(),
         extensions: vec![],
     }
@@ -226,4 +227,31 @@ fn provenance() -> Provenance {
 pub fn same(a: &Document, b: &Document) -> bool {
     let digest = |document| bbrf::container::digest(document).unwrap();
     digest(a) == digest(b) && format!("{a:?}") == format!("{b:?}")
+}
+
+/// Two factors over three excitations and two emissions, of the scan for want of a matrix.
+fn factorisation(data_digest: String) -> Factorisation {
+    let table = |rows: usize, columns: usize| {
+        ndarray::ArcArray2::from_shape_fn((rows, columns), |(i, j)| 0.1 * (1 + i + j) as f64)
+    };
+    Factorisation {
+        id: id("factors"),
+        title: None,
+        measurement: id("scan"),
+        data_digest,
+        excitation_nm: vec![380.0, 390.0, 400.0],
+        emission: WavelengthAxis::new(vec![500.0, 510.0], Bandpass::Unstated).unwrap(),
+        excitation: table(2, 3),
+        excitation_u: table(2, 3),
+        emission_factor: table(2, 2),
+        emission_factor_u: table(2, 2),
+        elastic: vec![f64::NAN, 0.5],
+        elastic_u: vec![f64::NAN, 0.01],
+        reach_nm: 15.0,
+        floor: 1e-3,
+        residual_rms: 1.2e-3,
+        residual_count: 6,
+        method: "made".into(),
+        findings: vec!["the emission width is unstated".into()],
+    }
 }

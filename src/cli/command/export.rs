@@ -12,7 +12,7 @@ use crate::cli::output::{print_bytes, print_message, write_output};
 use crate::cli::overwrite::refuse_overwriting;
 use crate::container::{self, Part};
 use crate::dataset::{Document, Measurement};
-use crate::export::{json, table_csv, universal_brdf};
+use crate::export::{bfc, json, matrix, table_csv, universal_brdf};
 use crate::quantity::{Geometry, QuantityKind};
 
 /// Write a file in another format.
@@ -23,7 +23,7 @@ pub(crate) struct Arguments {
     /// The format
     #[arg(long, value_enum)]
     to: Format,
-    /// The measurement, by id [default: the only one, or the only one that is a factor]
+    /// The measurement, by id [default: the only one, or the only one that is a factor; a matrix: the only Donaldson matrix]
     #[arg(long, value_name = "ID")]
     measurement: Option<String>,
     /// Only the rows of this geometry: theta_i,phi_i,theta_v,phi_v in degrees; the rest of the file is not read
@@ -45,6 +45,10 @@ enum Format {
     Json,
     /// One measurement as Universal BRDF JSON
     UniversalBrdf,
+    /// One measurement over excitation and emission as a text of a matrix
+    Matrix,
+    /// One Donaldson matrix as a file of the Labsphere BFC-450
+    Bfc,
 }
 
 impl Format {
@@ -74,6 +78,14 @@ pub(crate) fn run(arguments: &Arguments) -> CommandResult {
         Format::UniversalBrdf => {
             let measurement = chosen(&document, arguments.measurement.as_deref())?;
             universal_brdf::write(&document, measurement, &mut bytes).map_err(|error| miette!("{error}"))?
+        }
+        Format::Matrix => {
+            let measurement = chosen_matrix(&document, arguments.measurement.as_deref())?;
+            matrix::write(&document, measurement, &mut bytes).map_err(|error| miette!("{error}"))?
+        }
+        Format::Bfc => {
+            let measurement = chosen_matrix(&document, arguments.measurement.as_deref())?;
+            bfc::write(&document, measurement, &mut bytes).map_err(|error| miette!("{error}"))?
         }
         Format::Json => {
             let digest = container::digest(&document).map_err(|error| miette!("{error}"))?;
@@ -118,6 +130,16 @@ fn rows(text: &str) -> Result<Range<usize>, String> {
     ends.filter(|range: &Range<usize>| !range.is_empty()).ok_or_else(|| {
         format!("`{text}` is no range of rows; expected the first row and the one after the last, as in 10..20")
     })
+}
+
+/// The measurement by id, the only Donaldson matrix, or the only measurement.
+fn chosen_matrix<'a>(document: &'a Document, id: Option<&str>) -> Result<&'a Measurement, miette::Report> {
+    let is_matrix = |measurement: &&Measurement| measurement.quantity.kind == QuantityKind::DonaldsonMatrix;
+    let mut matrices = document.measurements.iter().filter(is_matrix);
+    match (id, matrices.next(), matrices.next()) {
+        (None, Some(only), None) => Ok(only),
+        _ => chosen(document, id),
+    }
 }
 
 pub(super) fn chosen<'a>(document: &'a Document, id: Option<&str>) -> Result<&'a Measurement, miette::Report> {

@@ -18,7 +18,7 @@ use crate::quantity::{Geometry, Part, QuantityKind, Reference, ReferenceLight};
 /// Import spectra, scans and tables into one .bbrf file
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
-    /// A manifest (CSV or TOML), a table CSV, a Universal BRDF, files of spectra, or a folder with --pattern or --scan-order
+    /// A manifest (CSV or TOML), a table CSV, a Universal BRDF, a matrix (BFC, text, iccMAX XML), files of spectra, or a folder with --pattern or --scan-order
     #[arg(required = true, value_name = "INPUT")]
     inputs: Vec<PathBuf>,
     /// The file to write
@@ -41,7 +41,8 @@ pub(crate) struct Arguments {
 #[derive(Debug, Args)]
 #[command(next_help_heading = "How the files are read")]
 struct Reading {
-    /// Force the format: pr650, spectrawin, columns, table, manifest, manifest-toml, universal-brdf
+    /// Force the format: pr650, spectrawin, columns, table, manifest, manifest-toml, universal-brdf, bfc, matrix,
+    /// icc-xml, spdx, cgats
     #[arg(long)]
     format: Option<Format>,
     /// Force the dialect of texts of columns, as semicolon-decimal-comma

@@ -3,6 +3,7 @@
 //! What other programs change when they copy a file is accepted: other integer and float types that hold the values,
 //! arrays of one where a scalar was, attributes and datasets that the standard does not know.
 
+mod factorisation;
 mod measurement;
 mod model;
 mod parts;
@@ -31,6 +32,7 @@ pub(super) fn decode(root: &Group) -> Result<Document, ReadError> {
         white_references: root.list(name::WHITE_REFERENCE, parts::white_reference)?,
         measurements: root.list(name::MEASUREMENT, measurement::measurement)?,
         models: root.list(name::MODEL, model::model)?,
+        factorisations: root.list(name::FACTORISATION, factorisation::factorisation)?,
         provenance: root.child(name::PROVENANCE).map_or_else(|| Ok(Default::default()), |at| parts::provenance(&at))?,
         extensions: root.child(name::EXTENSION).map_or_else(|| Ok(Vec::new()), |at| parts::extensions(&at))?,
     })

@@ -88,7 +88,7 @@ pub(super) fn emission_axis(at: &At<'_>) -> Result<EmissionAxis, ReadError> {
     Ok(EmissionAxis::Band { band })
 }
 
-fn wavelength_axis(at: &At<'_>) -> Result<WavelengthAxis, ReadError> {
+pub(super) fn wavelength_axis(at: &At<'_>) -> Result<WavelengthAxis, ReadError> {
     let bandpass = match at.group.dataset(name::FWHM) {
         None => Bandpass::Unstated,
         Some(dataset) => {

@@ -1,6 +1,7 @@
 //! A document as a [`Tree`](Group). It faces `decode`, which has the same files.
 
 mod extension;
+mod factorisation;
 mod measurement;
 mod model;
 mod parts;
@@ -29,6 +30,7 @@ pub(super) fn encode(document: &Document) -> Result<Group, EncodeError> {
     root.list(name::WHITE_REFERENCE, &document.white_references, |part| (&part.id, parts::white_reference(part)))?;
     root.list(name::MEASUREMENT, &document.measurements, |part| (&part.id, encode_measurement(part)))?;
     root.list(name::MODEL, &document.models, |part| (&part.id, model::model(part)))?;
+    root.list(name::FACTORISATION, &document.factorisations, |part| (&part.id, factorisation::factorisation(part)))?;
     root.groups.push((name::PROVENANCE.to_owned(), parts::provenance(&document.provenance)?));
     describe(&mut root, "");
     if !document.extensions.is_empty() {

@@ -77,7 +77,7 @@ pub(super) fn emission_axis(group: &mut Group, axis: &EmissionAxis) -> Result<&'
     }
 }
 
-fn wavelength_axis(group: &mut Group, axis: &WavelengthAxis) -> Result<(), EncodeError> {
+pub(super) fn wavelength_axis(group: &mut Group, axis: &WavelengthAxis) -> Result<(), EncodeError> {
     group.scale(name::WAVELENGTH, &axis.nm, "nm", "nominal emission wavelength in air");
     if !axis.actual_nm.is_empty() {
         group

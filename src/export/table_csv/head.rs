@@ -4,7 +4,7 @@ use crate::dataset::{Document, Excitation, Id, Measurement};
 use crate::quantity::{Bandpass, EmissionAxis};
 
 /// The keys with their values, in the order of the file.
-pub(super) fn keys(document: &Document, measurement: &Measurement) -> Vec<(&'static str, String)> {
+pub(in crate::export) fn keys(document: &Document, measurement: &Measurement) -> Vec<(&'static str, String)> {
     let mut keys = vec![("id", measurement.id.to_string())];
     let mut add = |name, value: Option<String>| keys.extend(value.map(|value| (name, one_line(&value))));
     add("title", measurement.title.clone().or_else(|| document.title.clone()));
@@ -64,7 +64,7 @@ fn named(id: &Id, title: Option<&str>) -> String {
 }
 
 /// The excitation of all rows, where they differ in the wavelength at most, which has a column.
-pub(super) fn common_state(measurement: &Measurement) -> Option<&Excitation> {
+pub(in crate::export) fn common_state(measurement: &Measurement) -> Option<&Excitation> {
     let mut states = measurement.acquisitions.iter().map(|row| measurement.excitation_of(row));
     let first = states.next()??;
     let same = |other: &Excitation| {

@@ -5,6 +5,7 @@ pub(super) mod albedo;
 pub(super) mod bytes;
 pub(super) mod calibration;
 pub(super) mod digest;
+pub(super) mod factorisation;
 pub(super) mod flags;
 pub(super) mod geometry;
 mod hemisphere;

@@ -5,7 +5,7 @@ use super::super::finding::Finder;
 use crate::container::layout::name;
 use crate::container::tree::Array;
 use crate::dataset::Place;
-use crate::quantity::{Bandpass, EmissionAxis, NormalisedAt, Part, Quantity, QuantityKind, Reference};
+use crate::quantity::{EmissionAxis, NormalisedAt, Part, Quantity, QuantityKind, Reference};
 
 pub(in super::super) fn units(context: &Context<'_>, found: &mut Finder) {
     for (path, dataset) in context.datasets() {
@@ -140,13 +140,10 @@ pub(in super::super) fn certified_factor_range(context: &Context<'_>, found: &mu
 
 pub(in super::super) fn donaldson_width(context: &Context<'_>, found: &mut Finder) {
     for (path, measurement) in context.measurements() {
-        let widths = match &measurement.emission {
-            EmissionAxis::Wavelengths(axis) => axis.bandpass != Bandpass::Unstated,
-            EmissionAxis::Band { .. } => false,
-        };
-        if measurement.quantity.kind == QuantityKind::DonaldsonMatrix && !widths {
-            let place = Place::path(format!("{path}/{}", name::FWHM));
-            found.add(place, "nothing", "the emission width that the off-diagonal values contain");
+        let band = matches!(measurement.emission, EmissionAxis::Band { .. });
+        if measurement.quantity.kind == QuantityKind::DonaldsonMatrix && band {
+            let place = Place::path(format!("{path}/{}", name::VALUE));
+            found.add(place, "the value of a band", "values over emission wavelengths, whose width they contain");
         }
     }
 }

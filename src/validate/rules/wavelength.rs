@@ -11,12 +11,15 @@ fn axes<'a>(context: &Context<'a>) -> Vec<(String, &'a WavelengthAxis)> {
     let Some(document) = context.document() else { return Vec::new() };
     let measured = document.measurements.iter().map(|m| (format!("/{}/{}", name::MEASUREMENT, m.id), &m.emission));
     let fitted = document.models.iter().map(|m| (format!("/{}/{}", name::MODEL, m.id), &m.emission));
+    let factorised =
+        document.factorisations.iter().map(|f| (format!("/{}/{}", name::FACTORISATION, f.id), &f.emission));
     let mut axes: Vec<_> = measured
         .chain(fitted)
         .filter_map(|(path, emission)| match emission {
             EmissionAxis::Wavelengths(axis) => Some((path, axis)),
             EmissionAxis::Band { .. } => None,
         })
+        .chain(factorised)
         .collect();
     for light in &document.lights {
         if let Some(spectrum) = &light.spectrum {

@@ -4,7 +4,7 @@ use miette::miette;
 
 use crate::cli::opened::open;
 use crate::dataset::{Document, Measurement};
-use crate::quantity::QuantityKind;
+use crate::quantity::{Part, QuantityKind};
 
 /// The file and the id of `FILE#ID`.
 pub(super) fn split(name: &str) -> (&str, Option<&str>) {
@@ -22,7 +22,10 @@ pub(super) fn load(name: &str) -> Result<Measurement, miette::Report> {
 }
 
 fn pick<'a>(document: &'a Document, path: &str, id: Option<&str>) -> Result<&'a Measurement, miette::Report> {
-    let is_matrix = |one: &&Measurement| one.quantity.kind == QuantityKind::DonaldsonMatrix;
+    // The luminescent part that a separation leaves beside its matrix is none to choose.
+    let is_matrix = |one: &&Measurement| {
+        one.quantity.kind == QuantityKind::DonaldsonMatrix && one.quantity.part != Part::Luminescent
+    };
     let matrices: Vec<&Measurement> = document.measurements.iter().filter(is_matrix).collect();
     let names = || matrices.iter().map(|one| one.id.to_string()).collect::<Vec<_>>().join(", ");
     match (id, matrices.as_slice()) {

@@ -1,26 +1,30 @@
-//! `bbrf donaldson`: bispectral matrices.
+//! `bbrf donaldson`: bispectral matrices, one file per step.
 
 mod light_source;
 mod material;
-mod predict;
+pub(crate) mod predict;
+pub(crate) mod separate;
+
+use clap::Subcommand;
 
 use crate::cli::exit::CommandResult;
-pub(crate) use predict::PredictResult;
 
-/// Bispectral (Donaldson) matrices: what they make of a light
+/// Bispectral matrices: separate, estimate, predict
 #[derive(Debug, clap::Args)]
 pub(crate) struct Arguments {
     #[command(subcommand)]
-    command: Command,
+    step: Step,
 }
 
-#[derive(Debug, clap::Subcommand)]
-enum Command {
+#[derive(Debug, Subcommand)]
+enum Step {
+    Separate(separate::Arguments),
     Predict(Box<predict::Arguments>),
 }
 
 pub(crate) fn run(arguments: &Arguments) -> CommandResult {
-    match &arguments.command {
-        Command::Predict(arguments) => predict::run(arguments),
+    match &arguments.step {
+        Step::Separate(arguments) => separate::run(arguments),
+        Step::Predict(arguments) => predict::run(arguments),
     }
 }

@@ -1,0 +1,127 @@
+//! A matrix from spectra under a few known broadband lights: y_k(em) = r(em) E_k(em) + m(em) C_k(em), where C_k sums the
+//! excitation spectrum times light k below the emission.
+//!
+//! For a known excitation spectrum two lights give reflectance and emission at each wavelength, unless their ratio E/C is the
+//! same there: then the determinant is 0 and division gives anything. Reflectance and emission are therefore estimated over
+//! all wavelengths together, under the stated prior that they are smooth and not negative; where the lights alone leave
+//! the reflectance uncertain, the band is named.
+//!
+//! The excitation spectrum must be known, from a matrix of the same dye or from a fluorimeter: two lights fit a wrong one
+//! perfectly, with every number positive.
+
+mod linear;
+mod third;
+
+pub use linear::{Estimate, estimate_known};
+pub use third::{Helpful, third_light};
+
+/// Standard uncertainty of the reflectance, from the lights alone, beyond which a band counts as not told.
+pub const UNTOLD: f64 = 0.05;
+
+/// The wavelengths of the matrix.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Axes {
+    /// Excitation, nm, ascending.
+    pub excitation_nm: Vec<f64>,
+    /// Emission, nm, ascending.
+    pub emission_nm: Vec<f64>,
+}
+
+/// A light as the matrix sees it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Lit {
+    /// What it is called.
+    pub name: String,
+    /// Irradiance in each excitation cell over the emission width: E times step over width, one per excitation.
+    pub excitation: Vec<f64>,
+    /// Irradiance at each emission.
+    pub emission: Vec<f64>,
+}
+
+/// What was seen under a light.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Seen {
+    /// The light.
+    pub light: Lit,
+    /// pi times the radiance, one per emission, in the unit of the light; NaN where missing.
+    pub values: Vec<f64>,
+    /// Standard uncertainties of these.
+    pub sigma: Vec<f64>,
+}
+
+/// Why there is no estimate.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum NoEstimate {
+    /// One light does not tell reflection from luminescence.
+    #[error("{0} light; expected two or more: under one light reflected and luminescent light are one sum")]
+    Lights(usize),
+    /// Arrays that do not fit.
+    #[error("light `{light}`: {found} values of {what}; expected {expected}")]
+    Length {
+        /// The light.
+        light: String,
+        /// Of what.
+        what: &'static str,
+        /// How many.
+        found: usize,
+        /// How many there should be.
+        expected: usize,
+    },
+    /// A value that is no number, or an uncertainty that is not positive.
+    #[error("light `{light}`, {nm} nm: {what} is {value}; expected {expected}")]
+    Value {
+        /// The light.
+        light: String,
+        /// Where.
+        nm: f64,
+        /// Of what.
+        what: &'static str,
+        /// The value.
+        value: f64,
+        /// What it should be.
+        expected: &'static str,
+    },
+    /// Nothing to solve.
+    #[error("the spectra determine no estimate: too few values, or lights without power")]
+    Undetermined,
+}
+
+/// Checks that all is there and fits.
+fn check(axes: &Axes, seen: &[Seen]) -> Result<(), NoEstimate> {
+    if seen.len() < 2 {
+        return Err(NoEstimate::Lights(seen.len()));
+    }
+    let (rows, columns) = (axes.excitation_nm.len(), axes.emission_nm.len());
+    for Seen { light, values, sigma } in seen {
+        for (what, found, expected) in [
+            ("the light at the excitation", light.excitation.len(), rows),
+            ("the light at the emission", light.emission.len(), columns),
+            ("the spectrum", values.len(), columns),
+            ("its uncertainty", sigma.len(), columns),
+        ] {
+            if found != expected {
+                return Err(NoEstimate::Length { light: light.name.clone(), what, found, expected });
+            }
+        }
+        let wrong = |nm: f64, what: &'static str, value: f64, expected: &'static str| {
+            Err(NoEstimate::Value { light: light.name.clone(), nm, what, value, expected })
+        };
+        for (nm, value) in axes.excitation_nm.iter().zip(&light.excitation) {
+            if !(value.is_finite() && *value >= 0.0) {
+                return wrong(*nm, "the light", *value, "0 or more");
+            }
+        }
+        for (k, nm) in axes.emission_nm.iter().enumerate() {
+            if !(light.emission[k].is_finite() && light.emission[k] >= 0.0) {
+                return wrong(*nm, "the light", light.emission[k], "0 or more");
+            }
+            if values[k].is_finite() && !(sigma[k].is_finite() && sigma[k] > 0.0) {
+                return wrong(*nm, "the uncertainty", sigma[k], "a positive number");
+            }
+            if values[k].is_infinite() {
+                return wrong(*nm, "the spectrum", values[k], "a number, or NaN where missing");
+            }
+        }
+    }
+    Ok(())
+}

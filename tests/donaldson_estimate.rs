@@ -1,0 +1,217 @@
+//! A matrix from two lights: right where the lights tell, named where they do not, and of what fits all of it.
+#![allow(unreachable_pub, clippy::unwrap_used)]
+
+mod common {
+    pub mod matrices;
+    pub mod scans;
+}
+
+use bbrf::donaldson::estimate::{Axes, Lit, NoEstimate, Seen, estimate_known, third_light};
+use bbrf::donaldson::{Matrix, Separate, separate};
+use common::matrices::{Bispectral, real};
+use common::scans::Random;
+use ndarray::Array2;
+
+/// What is seen is made of this.
+struct Truth {
+    axes: Axes,
+    reflectance: Vec<f64>,
+    excitation: Vec<f64>,
+    emission: Vec<f64>,
+}
+
+impl Truth {
+    fn synthetic() -> Self {
+        let made =
+            Bispectral { emission_nm: (0..31).map(|k| 400.0 + 10.0 * f64::from(k)).collect(), ..Bispectral::usual(1) };
+        let [x, wx, m, wm, s] = made.fluorophores[0];
+        let bell = |nm: f64, peak: f64, width: f64| (-((nm - peak) / width).powi(2) / 2.0).exp();
+        Self {
+            reflectance: made.emission_nm.iter().map(|nm| made.reflectance(*nm)).collect(),
+            excitation: made.excitation_nm.iter().map(|nm| bell(*nm, x, wx)).collect(),
+            emission: made.emission_nm.iter().map(|nm| s * bell(*nm, m, wm)).collect(),
+            axes: Axes { excitation_nm: made.excitation_nm, emission_nm: made.emission_nm },
+        }
+    }
+
+    /// The rank-1 parts of a real matrix, 400 to 700 nm.
+    fn of(matrix: &Matrix) -> Self {
+        let found = separate(matrix, Separate { rank: Some(1) }).unwrap();
+        let inside: Vec<usize> =
+            (0..matrix.emission_nm.len()).filter(|j| (400.0..=700.0).contains(&matrix.emission_nm[*j])).collect();
+        Self {
+            reflectance: inside.iter().map(|j| found.elastic[*j].max(0.0)).collect(),
+            excitation: found.factors.excitation.row(0).to_vec(),
+            emission: inside.iter().map(|j| found.factors.emission[(0, *j)]).collect(),
+            axes: Axes {
+                excitation_nm: matrix.excitation_nm.clone(),
+                emission_nm: inside.iter().map(|j| matrix.emission_nm[*j]).collect(),
+            },
+        }
+    }
+
+    fn luminescent(&self) -> Array2<f64> {
+        Array2::from_shape_fn((self.axes.excitation_nm.len(), self.axes.emission_nm.len()), |(i, j)| {
+            let stokes = self.axes.emission_nm[j] > self.axes.excitation_nm[i];
+            if stokes { self.excitation[i] * self.emission[j] } else { 0.0 }
+        })
+    }
+
+    fn seen(&self, light: &Lit, noise: f64, random: &mut Random) -> Seen {
+        let luminescent = self.luminescent();
+        let exact = |j: usize| {
+            let excited: f64 =
+                (0..self.axes.excitation_nm.len()).map(|i| light.excitation[i] * luminescent[(i, j)]).sum();
+            self.reflectance[j] * light.emission[j] + excited
+        };
+        let exact: Vec<f64> = (0..self.axes.emission_nm.len()).map(exact).collect();
+        Seen {
+            light: light.clone(),
+            values: exact.iter().map(|value| value * (1.0 + noise * random.normal())).collect(),
+            sigma: exact.iter().map(|value| noise * value).collect(),
+        }
+    }
+
+    fn light(&self, name: &str, at: impl Fn(f64) -> f64) -> Lit {
+        Lit {
+            name: name.to_owned(),
+            excitation: self.axes.excitation_nm.iter().map(|nm| at(*nm)).collect(),
+            emission: self.axes.emission_nm.iter().map(|nm| at(*nm)).collect(),
+        }
+    }
+}
+
+/// Planck's law, 1 at 560 nm.
+fn black_body(kelvin: f64) -> impl Fn(f64) -> f64 {
+    let at = move |nm: f64| (nm * 1e-9_f64).powi(-5) / (1.438_776_877e-2 / (nm * 1e-9 * kelvin)).exp_m1();
+    move |nm| at(nm) / at(560.0)
+}
+
+/// A table of /shared, by straight lines; `None` without it.
+fn table(name: &str) -> Option<impl Fn(f64) -> f64> {
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../shared/data/spectra/{name}.csv"));
+    let text = std::fs::read_to_string(path).ok()?;
+    let pairs: Vec<(f64, f64)> = text
+        .lines()
+        .filter_map(|line| {
+            line.split_once(',').map(|(nm, value)| (nm.trim().parse().unwrap(), value.trim().parse().unwrap()))
+        })
+        .collect();
+    let at = move |nm: f64| {
+        let after = pairs.partition_point(|pair| pair.0 < nm).clamp(1, pairs.len() - 1);
+        let (a, b) = (pairs[after - 1], pairs[after]);
+        (a.1 + (b.1 - a.1) * (nm - a.0) / (b.0 - a.0)).max(0.0)
+    };
+    let norm = at(560.0);
+    Some(move |nm| at(nm) / norm)
+}
+
+fn rms(errors: &[f64]) -> f64 {
+    (errors.iter().map(|error| error * error).sum::<f64>() / errors.len() as f64).sqrt()
+}
+
+/// Root mean square error of the reflectance at each wavelength, over many noisy pairs of spectra, and which are told.
+fn errors(truth: &Truth, lights: &[Lit], trials: u64) -> (Vec<f64>, Vec<f64>, Vec<bool>) {
+    let columns = truth.reflectance.len();
+    let (mut errors, mut pulls, mut told) = (vec![Vec::new(); columns], Vec::new(), vec![true; columns]);
+    for trial in 0..trials {
+        let mut random = Random::new(91 + trial);
+        let seen: Vec<Seen> = lights.iter().map(|light| truth.seen(light, 0.01, &mut random)).collect();
+        let found = estimate_known(&truth.axes, &truth.excitation, &seen).unwrap();
+        for j in 0..columns {
+            let error = found.reflectance[j] - truth.reflectance[j];
+            errors[j].push(error);
+            pulls.push(error / found.reflectance_sigma[j]);
+            told[j] &= found.is_told(j);
+        }
+    }
+    (errors.iter().map(|errors| rms(errors)).collect(), pulls, told)
+}
+
+fn median(values: &[f64]) -> f64 {
+    let mut sorted = values.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    sorted[sorted.len() / 2]
+}
+
+#[test]
+fn with_a_known_excitation_two_lights_give_the_reflectance_and_error_bars_that_hold() {
+    let truth = Truth::synthetic();
+    let lights = [truth.light("2856 K", black_body(2856.0)), truth.light("6500 K", black_body(6500.0))];
+    let (rms, pulls, told) = errors(&truth, &lights, 40);
+    println!("median {:.4}, worst {:.4}", median(&rms), rms.iter().copied().fold(0.0, f64::max));
+    assert!(rms.iter().all(|error| *error <= 0.03), "{rms:?}");
+    let covered = pulls.iter().filter(|pull| pull.abs() < 1.96).count() as f64 / pulls.len() as f64;
+    println!("covered {covered:.3}");
+    assert!((0.92..=0.99).contains(&covered), "{covered}");
+    assert!(told.iter().all(|told| *told), "{told:?}");
+}
+
+/// The figures of the issue: real matrices, the CIE's lights.
+#[test]
+fn real_matrices_under_real_lights() {
+    let (Some(a), Some(d65), Some(c)) = (table("A"), table("D65"), table("C")) else { return };
+    for (name, measurement) in real() {
+        let truth = Truth::of(&Matrix::of(&measurement).unwrap());
+        let [a, d65, c] = [truth.light("A", &a), truth.light("D65", &d65), truth.light("C", &c)];
+        for (pair, lights) in [("A + D65", [a, d65.clone()]), ("D65 + C", [d65, c])] {
+            let (rms, pulls, told) = errors(&truth, &lights, 20);
+            let worst = (0..rms.len()).max_by(|x, y| rms[*x].total_cmp(&rms[*y])).unwrap();
+            let untold = told.iter().filter(|told| !**told).count();
+            let covered = pulls.iter().filter(|pull| pull.abs() < 1.96).count() as f64 / pulls.len() as f64;
+            println!(
+                "{name} {pair}: median {:.4}, worst {:.4} at {} nm (told: {}), {untold} of {} bands not told, covered {covered:.3}",
+                median(&rms),
+                rms[worst],
+                truth.axes.emission_nm[worst],
+                told[worst],
+                rms.len()
+            );
+            for (error, told) in rms.iter().zip(&told) {
+                assert!(*error < 0.05 || !told, "{name} {pair}: {rms:?} {told:?}");
+            }
+        }
+    }
+}
+
+/// Two lights whose ratio to the excited light is the same at a wavelength: dividing by their determinant gives anything.
+#[test]
+fn a_band_where_the_determinant_is_zero_is_named_and_not_divided() {
+    let truth = Truth::synthetic();
+    let usual = black_body(5500.0);
+    // At 540 nm and beyond the second light has as much more light as it excites more.
+    let first = truth.light("first", &usual);
+    let mut second = truth.light("second", |nm| usual(nm) * 1.5);
+    for (j, nm) in truth.axes.emission_nm.iter().enumerate() {
+        if *nm > 450.0 && (*nm - 540.0).abs() > 15.0 {
+            second.emission[j] *= 0.7;
+        }
+    }
+    let mut random = Random::new(3);
+    let seen = [truth.seen(&first, 0.01, &mut random), truth.seen(&second, 0.01, &mut random)];
+    let found = estimate_known(&truth.axes, &truth.excitation, &seen).unwrap();
+    for (j, nm) in truth.axes.emission_nm.iter().enumerate().filter(|(_, nm)| **nm > 460.0 && **nm < 620.0) {
+        let inside = (*nm - 540.0).abs() <= 15.0;
+        assert_eq!(found.is_told(j), !inside, "{nm}: {}", found.lights_alone[j]);
+        let error = (found.reflectance[j] - truth.reflectance[j]).abs();
+        assert!(error < 4.0 * found.reflectance_sigma[j], "{nm}: {error} {}", found.reflectance_sigma[j]);
+    }
+}
+
+#[test]
+fn a_useful_third_light_is_found_and_a_useless_call_is_refused() {
+    let truth = Truth::synthetic();
+    let lights = [truth.light("2856 K", black_body(2856.0)), truth.light("3000 K", black_body(3000.0))];
+    let mut random = Random::new(5);
+    let seen: Vec<Seen> = lights.iter().map(|light| truth.seen(light, 0.01, &mut random)).collect();
+    let candidates = [truth.light("2900 K", black_body(2900.0)), truth.light("6500 K", black_body(6500.0))];
+    let (ranked, now) = third_light(&truth.axes, &truth.excitation, &seen, &candidates).unwrap();
+    assert_eq!(ranked[0].name, "6500 K");
+    assert!(ranked[0].reflectance_sigma < 0.5 * now, "{ranked:?} {now}");
+    assert_eq!(estimate_known(&truth.axes, &truth.excitation, &seen[..1]), Err(NoEstimate::Lights(1)));
+    let mut wrong = seen.clone();
+    wrong[1].sigma[3] = 0.0;
+    assert!(matches!(estimate_known(&truth.axes, &truth.excitation, &wrong), Err(NoEstimate::Value { .. })));
+    wrong[1].values.pop();
+    assert!(matches!(estimate_known(&truth.axes, &truth.excitation, &wrong), Err(NoEstimate::Length { .. })));
+}
