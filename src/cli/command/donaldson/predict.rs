@@ -16,20 +16,21 @@ use crate::donaldson::{
 };
 pub(crate) use result::PredictResult;
 
+const EXAMPLES: &str = "\
+Examples:
+  bbrf donaldson predict postit.bbrf --light D65 --light A --light FL11
+  bbrf donaldson predict paint.bbrf#orange --light lamp.csv -o spectrum.csv
+  bbrf donaldson predict new.bbrf faded.bbrf --light scan.bbrf#sun --observer 10 --json
+  bbrf donaldson predict postit.bbrf --compare";
+
 /// Predict spectrum and colour of a matrix under any light
 ///
 /// The matrix is separated into its elastic and luminescent part first (as `bbrf donaldson separate` does). Light is shared out
 /// between the excitations by exact integrals, so that no line of a lamp is lost and no step matters. Numbers are pi times the
 /// radiance: of the perfect diffuser they equal what falls in. A light that has no value where the matrix is excited or emits is a
 /// warning on standard error, with what is lost. Nothing is clipped: a fluorescent colour may be brighter than white.
-///
-/// Examples:
-///   bbrf donaldson predict postit.bbrf --light D65 --light A --light FL11
-///   bbrf donaldson predict paint.bbrf#orange --light lamp.csv -o spectrum.csv
-///   bbrf donaldson predict new.bbrf faded.bbrf --light scan.bbrf#sun --observer 10 --json
-///   bbrf donaldson predict postit.bbrf --compare
 #[derive(Debug, clap::Args)]
-#[command(verbatim_doc_comment)]
+#[command(after_help = EXAMPLES)]
 pub(crate) struct Arguments {
     /// Matrices: FILE.bbrf#ID (FILE.bbrf where it holds one); the second and further are compared with the first
     #[arg(required = true, value_name = "FILE")]
