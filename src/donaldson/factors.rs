@@ -91,6 +91,20 @@ impl Factors {
         pairs.map(|((i, a), (j, b))| a * self.covariance[(*i, *j)] * b).sum::<f64>().max(0.0).sqrt()
     }
 
+    /// The variance of a sum of cells, each times its weight.
+    pub(super) fn sum_variance(&self, weight: impl Fn(usize, usize) -> f64) -> f64 {
+        let ((k, rows), columns) = (self.excitation.dim(), self.emission.ncols());
+        let mut gradient = DVector::zeros(k * (rows + columns));
+        for (i, j) in (0..rows).flat_map(|i| (0..columns).map(move |j| (i, j))) {
+            let weight = weight(i, j);
+            for factor in 0..k {
+                gradient[factor * rows + i] += weight * self.emission[(factor, j)];
+                gradient[k * rows + factor * columns + j] += weight * self.excitation[(factor, i)];
+            }
+        }
+        gradient.dot(&(&self.covariance * &gradient)).max(0.0)
+    }
+
     /// How many factors.
     #[must_use]
     pub fn rank(&self) -> usize {

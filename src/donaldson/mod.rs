@@ -6,18 +6,32 @@
 //! *Invariant:* negative noise stays until a step that says so; what a matrix cannot tell is NaN or named, never filled in
 //! silence; a light is never cut where the matrix is excited.
 
+mod apply;
 mod balance;
+mod colour;
+mod daylight;
 pub mod estimate;
 mod factors;
+mod illuminant;
+mod light;
 mod matrix;
 mod nonnegative;
 mod overlap;
+mod piecewise;
+mod predict;
+mod reradiation;
 mod separate;
 mod store;
+mod unlit;
 
 pub use balance::{Balance, Share};
+pub use colour::{Colour, Difference, Observer, Whiteness};
 pub use factors::Factors;
+pub use light::{Extend, Light, NoLight};
 pub use matrix::{Matrix, NoMatrix, steps};
 pub use overlap::{Floor, Overlap};
+pub use predict::{Prediction, Visible};
+pub use reradiation::{Luminescence, NotAligned, Reradiation};
 pub use separate::{NotSeparated, Separate, Separated, separate};
 pub use store::{Parts, parts};
+pub use unlit::Unlit;

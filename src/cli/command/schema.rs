@@ -25,6 +25,7 @@ pub(crate) fn all() -> Vec<(&'static str, Schema)> {
         ("design", schema_for!(super::design::DesignResult)),
         ("donaldson-separate", schema_for!(super::donaldson::separate::SeparateResult)),
         ("document", schema_for!(Document)),
+        ("donaldson-predict", schema_for!(super::donaldson::predict::PredictResult)),
         ("eval", schema_for!(super::eval::EvalResult)),
         ("eval-model", schema_for!(crate::cli::model_source::ModelJson)),
         ("fit", schema_for!(super::fit::FitResult)),

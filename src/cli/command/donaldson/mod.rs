@@ -1,5 +1,8 @@
 //! `bbrf donaldson`: bispectral matrices, one file per step.
 
+mod light_source;
+mod material;
+pub(crate) mod predict;
 pub(crate) mod separate;
 
 use clap::Subcommand;
@@ -16,10 +19,12 @@ pub(crate) struct Arguments {
 #[derive(Debug, Subcommand)]
 enum Step {
     Separate(separate::Arguments),
+    Predict(Box<predict::Arguments>),
 }
 
 pub(crate) fn run(arguments: &Arguments) -> CommandResult {
     match &arguments.step {
         Step::Separate(arguments) => separate::run(arguments),
+        Step::Predict(arguments) => predict::run(arguments),
     }
 }

@@ -1,0 +1,142 @@
+//! The light that a command is given: a name of the CIE, a light or a lamp measurement of a file, or a text of two columns.
+
+use std::path::{Path, PathBuf};
+
+use miette::miette;
+
+use super::material::{or_none, split};
+use crate::cli::opened::open;
+use crate::dataset::{Document, Measurement, Role};
+use crate::donaldson::Light;
+use crate::import::{Options, import};
+use crate::quantity::{Bandpass, EmissionAxis, Flag, QuantityKind, WavelengthAxis};
+
+/// A light, with remarks on how it was read.
+pub(super) struct Loaded {
+    pub(super) light: Light,
+    pub(super) remarks: Vec<String>,
+}
+
+/// Reads a light.
+pub(super) fn load(name: &str) -> Result<Loaded, miette::Report> {
+    if let Some(light) = Light::named(name) {
+        return Ok(Loaded { light, remarks: Vec::new() });
+    }
+    let (path, id) = split(name);
+    if Path::new(path).extension().is_some_and(|extension| extension == "bbrf") {
+        return of_document(name, path, id, &open(path.as_ref())?.document);
+    }
+    if !Path::new(name).is_file() {
+        return Err(miette!(
+            help = "name a light of the CIE, or a file: two columns (nm, value), a spectrum that `bbrf import` reads, FILE.bbrf#ID",
+            "--light {name}: found neither a file nor a light of the CIE; expected one of {}, or another daylight as D60",
+            Light::names().join(", ")
+        ));
+    }
+    let options = Options { role: Some(Role::Lamp), allow_partial_grid: true, ..Options::default() };
+    let document = import(&[PathBuf::from(name)], &options).map_err(|error| miette!("{error}"))?;
+    of_document(name, name, None, &document)
+}
+
+/// What a document may offer as a light.
+enum Offer<'a> {
+    Light(&'a crate::dataset::Light, &'a crate::dataset::LightSpectrum),
+    Measurement(&'a Measurement),
+}
+
+impl Offer<'_> {
+    fn id(&self) -> &str {
+        match self {
+            Self::Light(light, _) => light.id.as_str(),
+            Self::Measurement(measurement) => measurement.id.as_str(),
+        }
+    }
+}
+
+fn of_document(name: &str, path: &str, id: Option<&str>, document: &Document) -> Result<Loaded, miette::Report> {
+    let lights = document.lights.iter().filter_map(|light| Some(Offer::Light(light, light.spectrum.as_ref()?)));
+    let lamps = document.measurements.iter().filter(|one| id.is_some() || one.role == Role::Lamp);
+    let offers: Vec<Offer<'_>> = lights.chain(lamps.map(Offer::Measurement)).collect();
+    let names = || or_none(offers.iter().map(|offer| offer.id().to_owned()).collect::<Vec<_>>().join(", "));
+    let offer = match (id, offers.as_slice()) {
+        (Some(id), all) => all
+            .iter()
+            .find(|offer| offer.id() == id)
+            .ok_or_else(|| miette!("--light {name}: no light or measurement `{id}`; the file has: {}", names()))?,
+        (None, [one]) => one,
+        (None, []) => {
+            return Err(miette!(
+                "--light {name}: found no light with a spectrum and no lamp measurement; expected one"
+            ));
+        }
+        (None, _) => return Err(miette!("--light {name}: holds several lights ({}); name one as {path}#ID", names())),
+    };
+    match offer {
+        Offer::Light(_, spectrum) => {
+            let values = spectrum.values.iter().zip(&spectrum.flags);
+            let values = values.map(|(value, flags)| (*value, *flags)).collect();
+            finish(name, spectrum.quantity.kind, &spectrum.axis, values, Vec::new())
+        }
+        Offer::Measurement(measurement) => of_measurement(name, measurement),
+    }
+}
+
+/// The mean of its rows.
+fn of_measurement(name: &str, measurement: &Measurement) -> Result<Loaded, miette::Report> {
+    let EmissionAxis::Wavelengths(axis) = &measurement.emission else {
+        return Err(miette!(
+            "--light {name}: measurement `{}` has no wavelengths; expected a spectrum",
+            measurement.id
+        ));
+    };
+    let rows = measurement.values.nrows();
+    let mean = |column: usize| {
+        let usable = || (0..rows).filter(|row| measurement.flags[(*row, column)] & excluded() == 0);
+        let sum: f64 = usable().map(|row| measurement.values[(row, column)]).sum();
+        (sum / usable().count() as f64, 0)
+    };
+    let values = (0..measurement.values.ncols()).map(mean).collect();
+    let remarks = if rows > 1 { vec![format!("{name}: the mean of {rows} rows")] } else { Vec::new() };
+    finish(name, measurement.quantity.kind, axis, values, remarks)
+}
+
+fn excluded() -> u16 {
+    Flag::ALL.iter().filter(|flag| flag.excludes_from_fit()).fold(0, |mask, flag| mask | flag.bit())
+}
+
+fn finish(
+    name: &str,
+    kind: QuantityKind,
+    axis: &WavelengthAxis,
+    values: Vec<(f64, u16)>,
+    mut remarks: Vec<String>,
+) -> Result<Loaded, miette::Report> {
+    let all = if axis.actual_nm.len() == axis.nm.len() { &axis.actual_nm } else { &axis.nm };
+    let is_usable = |(value, flags): &(f64, u16)| value.is_finite() && flags & excluded() == 0;
+    let usable: Vec<usize> = (0..values.len().min(all.len())).filter(|k| is_usable(&values[*k])).collect();
+    let left_out = all.len() - usable.len();
+    if left_out > 0 {
+        remarks.push(format!(
+            "{name}: {left_out} of {} wavelengths have no usable value; it goes straight past them",
+            all.len()
+        ));
+    }
+    let kind = if kind == QuantityKind::Unstated {
+        remarks.push(format!("{name}: does not say what its numbers are; taken as a relative spectrum"));
+        QuantityKind::RelativeSpectrum
+    } else {
+        kind
+    };
+    let fwhm = match &axis.bandpass {
+        Bandpass::Stated { fwhm_nm, .. } if fwhm_nm.len() == 1 => Some(vec![fwhm_nm[0]; usable.len()]),
+        Bandpass::Stated { fwhm_nm, .. } if fwhm_nm.len() == all.len() => {
+            Some(usable.iter().map(|k| fwhm_nm[*k]).collect())
+        }
+        _ => None,
+    };
+    let of = |list: &[f64]| usable.iter().map(|k| list[*k]).collect::<Vec<f64>>();
+    let numbers: Vec<f64> = values.iter().map(|(value, _)| *value).collect();
+    let light =
+        Light::new(name, kind, of(all), of(&numbers), fwhm).map_err(|error| miette!("--light {name}: {error}"))?;
+    Ok(Loaded { light, remarks })
+}
