@@ -163,7 +163,7 @@ pub(super) const TABLE: &[Entry] = &[
     a("/factorisation/*@residual_count", "uint64", "1", "number of these cells"),
     d("/factorisation/*/factor", "int32", "1", "number of the factor; dimension scale"),
     d("/factorisation/*/wavelength_excitation", "float64", "nm", "centre of the excitation; dimension scale"),
-    d("/factorisation/*/excitation_factor", "float64", "1", "excitation spectra, each 1 at its peak"),
+    d("/factorisation/*/excitation_factor", "float64", "1", "excitation spectra, each 1 where its luminescence is strongest"),
     d("/factorisation/*/excitation_factor_u", "float64", "1", "standard uncertainty (k = 1) of these"),
     d("/factorisation/*/emission_factor", "float64", "1", "emission spectra in the unit of the matrix"),
     d("/factorisation/*/emission_factor_u", "float64", "1", "standard uncertainty (k = 1) of these"),

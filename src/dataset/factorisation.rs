@@ -23,7 +23,7 @@ pub struct Factorisation {
     pub excitation_nm: Vec<f64>,
     /// The emission axis; its bandpass is the width that the luminescent values hold.
     pub emission: WavelengthAxis,
-    /// Excitation spectra \[factor, excitation\], each 1 at its peak.
+    /// Excitation spectra \[factor, excitation\], each 1 where its luminescence is strongest.
     #[serde(with = "rows_plain")]
     #[schemars(with = "Vec<Vec<Option<f64>>>")]
     pub excitation: ArcArray2<f64>,

@@ -25,7 +25,7 @@ const SETTLED: f64 = 1e-10;
 /// Factors of the luminescence.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Factors {
-    /// Excitation spectra \[k, excitation\], each 1 at its peak.
+    /// Excitation spectra \[k, excitation\], each 1 where its luminescence is strongest.
     pub excitation: Array2<f64>,
     /// Emission spectra \[k, emission\], in the unit of the matrix: its values where the excitation is 1.
     pub emission: Array2<f64>,
@@ -145,9 +145,9 @@ fn alternate(
     let turned = Known { values: &values, weight, ..*known };
     let mut before = f64::INFINITY;
     for _ in 0..PASSES {
-        normalise(&mut excitation, &mut emission);
+        normalise(known, &mut excitation, &mut emission);
         excitation = best(known, &emission, pull(known))?.0;
-        normalise(&mut excitation, &mut emission);
+        normalise(known, &mut excitation, &mut emission);
         let (better, cost) = best(&turned, &excitation, 0.0)?;
         emission = better;
         if before - cost <= SETTLED * before {
@@ -155,7 +155,7 @@ fn alternate(
         }
         before = cost;
     }
-    normalise(&mut excitation, &mut emission);
+    normalise(known, &mut excitation, &mut emission);
     Some((excitation, emission))
 }
 
@@ -164,15 +164,25 @@ fn pull(known: &Known<'_>) -> f64 {
     TOGETHER * known.noise / EXPECTED.powi(2)
 }
 
-/// Each excitation 1 at its peak.
-fn normalise(excitation: &mut DMatrix<f64>, emission: &mut DMatrix<f64>) {
+/// Each excitation 1 where its luminescence is strongest over the noise. Its largest value may be noise, at an excitation of
+/// which the tail of the emission alone is left.
+fn normalise(known: &Known<'_>, excitation: &mut DMatrix<f64>, emission: &mut DMatrix<f64>) {
     for k in 0..excitation.ncols() {
-        let peak = excitation.column(k).max();
+        let peak = excitation[(strongest(known, excitation, emission, k), k)];
         if peak > 0.0 {
             excitation.column_mut(k).scale_mut(peak.recip());
             emission.column_mut(k).scale_mut(peak);
         }
     }
+}
+
+/// The excitation whose known cells hold most of a factor.
+fn strongest(known: &Known<'_>, excitation: &DMatrix<f64>, emission: &DMatrix<f64>, k: usize) -> usize {
+    let mut held = vec![0.0; excitation.nrows()];
+    for ((i, j), weight) in cells(known) {
+        held[i] += weight * (excitation[(i, k)] * emission[(j, k)]).powi(2);
+    }
+    (0..held.len()).max_by(|a, b| held[*a].total_cmp(&held[*b])).unwrap_or(0)
 }
 
 /// The best factor of one side, given that of the other, with its cost.
@@ -217,7 +227,7 @@ fn mean_weight(known: &Known<'_>) -> f64 {
 }
 
 /// What is left, and the covariance: the inverse of the curvature of both sides together. The scale between the two sides of
-/// a factor is fixed by the peak of the excitation, which has no uncertainty; neither has what ended at 0.
+/// a factor is fixed where the excitation is 1, which has no uncertainty; neither has what ended at 0.
 fn complete(known: &Known<'_>, excitation: DMatrix<f64>, emission: DMatrix<f64>) -> Option<Factors> {
     let ((rows, columns), k) = (known.values.dim(), excitation.ncols());
     let (values, weight) = known.turned();
@@ -250,10 +260,11 @@ fn complete(known: &Known<'_>, excitation: DMatrix<f64>, emission: DMatrix<f64>)
         sum += weight * residual * residual;
         count += 1;
     }
+    let fixed: Vec<usize> = (0..k).map(|factor| strongest(known, &excitation, &emission, factor)).collect();
     let is_free = |index: usize| {
         let (factor, i) = (index / rows, index % rows);
         if index < k * rows {
-            excitation[(i, factor)] > 0.0 && i != excitation.column(factor).imax()
+            excitation[(i, factor)] > 0.0 && i != fixed[factor]
         } else {
             emission[((index - k * rows) % columns, (index - k * rows) / columns)] > 0.0
         }

@@ -105,8 +105,7 @@ pub fn separate(matrix: &Matrix, asked: Separate) -> Result<Separated, NotSepara
     });
     let luminescent_sigma = Array2::from_shape_fn(shape, |at| match (is_inside(at), is_stokes(at)) {
         (true, true) => factors.sigma(at.0, at.1).hypot(factors.rms),
-        (true, false) => 0.0,
-        (false, _) => noise(at),
+        (_, _) => noise(at),
     });
     let (mut elastic, mut elastic_sigma) = (Vec::new(), Vec::new());
     for column in 0..shape.1 {

@@ -12,13 +12,14 @@ use super::full::{full, minimal};
 use super::{code, markdown, titled};
 
 /// Lists whose members are named by identifiers.
-const LISTS: [&str; 7] = [
+const LISTS: [&str; 8] = [
     name::SAMPLE,
     name::INSTRUMENT,
     name::LIGHT,
     name::WHITE_REFERENCE,
     name::MEASUREMENT,
     name::MODEL,
+    name::FACTORISATION,
     name::EXTENSION,
 ];
 

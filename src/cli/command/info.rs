@@ -9,7 +9,7 @@ use crate::cli::exit::{CommandResult, Outcome};
 use crate::cli::opened::open_whatever;
 use crate::cli::output::{print_json, print_text};
 use crate::container::Opened;
-use crate::dataset::{Measurement, Model};
+use crate::dataset::{Factorisation, Measurement, Model};
 use crate::validate::counted;
 
 /// Say what is inside a file.
@@ -41,6 +41,7 @@ pub(crate) struct InfoResult {
     white_references: Vec<String>,
     measurements: Vec<MeasurementInfo>,
     models: Vec<ModelInfo>,
+    factorisations: Vec<FactorisationInfo>,
     /// Number of imports with a receipt.
     receipts: usize,
     /// Paths of content that the standard does not know.
@@ -80,6 +81,35 @@ struct ModelInfo {
     residual_rms: f64,
 }
 
+/// One factorisation in short.
+#[derive(Debug, Serialize, JsonSchema)]
+struct FactorisationInfo {
+    id: String,
+    /// The matrix.
+    measurement: String,
+    rank: usize,
+    residual_rms: f64,
+}
+
+impl FactorisationInfo {
+    fn new(part: &Factorisation) -> Self {
+        Self {
+            id: part.id.to_string(),
+            measurement: part.measurement.to_string(),
+            rank: part.rank(),
+            residual_rms: part.residual_rms,
+        }
+    }
+
+    fn text(&self) -> String {
+        let factors = counted(self.rank, "factor");
+        format!(
+            "  factorisation {} of {}: {factors}, leaving {:.2e} r.m.s.",
+            self.id, self.measurement, self.residual_rms
+        )
+    }
+}
+
 pub(crate) fn run(arguments: &Arguments) -> CommandResult {
     let opened = open_whatever(&arguments.file)?;
     if arguments.digest {
@@ -110,6 +140,7 @@ impl InfoResult {
             white_references: document.white_references.iter().map(|part| part.id.to_string()).collect(),
             measurements: document.measurements.iter().map(MeasurementInfo::new).collect(),
             models: document.models.iter().map(ModelInfo::new).collect(),
+            factorisations: document.factorisations.iter().map(FactorisationInfo::new).collect(),
             receipts: document.provenance.receipts.len(),
             unknown: opened.unknown.clone(),
         }
@@ -131,6 +162,7 @@ impl InfoResult {
         }
         lines.extend(self.measurements.iter().map(MeasurementInfo::text));
         lines.extend(self.models.iter().map(ModelInfo::text));
+        lines.extend(self.factorisations.iter().map(FactorisationInfo::text));
         lines.push(format!("  {}", counted(self.receipts, "import receipt")));
         lines.extend(self.unknown.iter().map(|path| format!("  not of the standard: {path}")));
         lines.join("\n")

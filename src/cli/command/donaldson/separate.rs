@@ -62,7 +62,7 @@ pub(crate) struct SeparateResult {
     elastic: Vec<Option<f64>>,
     /// Its standard uncertainty.
     elastic_standard_uncertainty: Vec<Option<f64>>,
-    /// Excitation spectra, one list per factor, 1 at the peak.
+    /// Excitation spectra, one list per factor, 1 where the luminescence is strongest.
     excitation_factors: Vec<Vec<f64>>,
     /// Emission spectra, likewise, in the unit of the matrix.
     emission_factors: Vec<Vec<f64>>,
