@@ -30,7 +30,11 @@ struct Operators {
     dense: Array2<f64>,
     /// Its elastic part alone: for each emission where its window begins, and what it weighs.
     elastic: Vec<(usize, Vec<f64>)>,
-    /// How much each wavelength of the light excites each factor \[light, k\], and what the factors emit \[k, emission\].
+    /// The share of each excitation in the light, in the same form.
+    shares: Vec<(usize, Vec<f64>)>,
+    /// How many excitations lie at or below each emission.
+    below: Vec<usize>,
+    /// Excitation \[excitation, k\] and emission \[emission, k\] of the factors.
     excited: Array2<f64>,
     emitted: Array2<f64>,
     /// X, Y and Z from radiances \[emission, 3\], and those of white from the light \[light, 3\].
@@ -59,13 +63,15 @@ fn operators(measurement: &Measurement, nm: &[f64]) -> Operators {
     let mut all = Operators {
         dense: Array2::zeros((rows, columns)),
         elastic: Vec::new(),
-        excited: Array2::zeros((rows, k)),
-        emitted: Array2::zeros((k, columns)),
+        shares: Vec::new(),
+        below: Vec::new(),
+        excited: parts.factors.excitation.t().to_owned(),
+        emitted: Array2::zeros((columns, k)),
         colour: Array2::zeros((columns, 3)),
         white: Array2::zeros((rows, 3)),
     };
     let width = matrix.emission_width_nm();
-    let mut elastic = Array2::zeros((rows, columns));
+    let (mut elastic, mut shares) = (Array2::zeros((rows, columns)), Array2::zeros((rows, matrix.excitation_nm.len())));
     for row in 0..rows {
         let mut values = vec![0.0; rows];
         values[row] = 1.0;
@@ -77,21 +83,24 @@ fn operators(measurement: &Measurement, nm: &[f64]) -> Operators {
             let matching = Observer::Two.matching(matrix.emission_nm[j] as usize);
             (0..3).for_each(|c| all.white[(row, c)] += matching[c] * width[j] * found.irradiance[j]);
         }
-        let shares = surface.shares(&unit);
-        for factor in 0..k {
-            all.excited[(row, factor)] =
-                (0..shares.len()).map(|i| shares[i] * parts.factors.excitation[(factor, i)]).sum();
-        }
+        surface.shares(&unit).iter().enumerate().for_each(|(i, share)| shares[(row, i)] = *share);
     }
-    for j in 0..columns {
-        (0..k).for_each(|factor| all.emitted[(factor, j)] = parts.factors.emission[(factor, j)] / width[j]);
-        let used: Vec<usize> = (0..rows).filter(|row| elastic[(*row, j)] != 0.0).collect();
-        let (first, last) = (used.first().copied().unwrap_or(0), used.last().copied().unwrap_or(0));
-        all.elastic.push((first, (first..=last).map(|row| elastic[(row, j)]).collect()));
+    for (j, width) in width.iter().enumerate() {
+        (0..k).for_each(|factor| all.emitted[(j, factor)] = parts.factors.emission[(factor, j)] / width);
+        all.below.push(matrix.excitation_nm.partition_point(|nm| *nm <= matrix.emission_nm[j]));
         let matching = Observer::Two.matching(matrix.emission_nm[j] as usize);
-        (0..3).for_each(|c| all.colour[(j, c)] = matching[c] * width[j]);
+        (0..3).for_each(|c| all.colour[(j, c)] = matching[c] * width);
     }
+    all.elastic = elastic.columns().into_iter().map(band).collect();
+    all.shares = shares.columns().into_iter().map(band).collect();
     all
+}
+
+/// Where a column is not 0: the first row, and the values from there.
+fn band(column: ArrayView1<'_, f64>) -> (usize, Vec<f64>) {
+    let used: Vec<usize> = (0..column.len()).filter(|row| column[*row] != 0.0).collect();
+    let (first, last) = (used.first().copied().unwrap_or(0), used.last().copied().unwrap_or(0));
+    (first, (first..=last).map(|row| column[row]).collect())
 }
 
 /// Mixtures of three lights, as what falls in from all around is.
@@ -107,12 +116,26 @@ fn incident(lights: &[Vec<f64>], random: &mut Random) -> Array2<f64> {
     block
 }
 
+/// Elastic light and products of factors. An emission is excited at or below its wavelength only: the product alone would let what
+/// red light seems to excite in the noise shine in the blue, which is wrong by ten units of CIE76.
 fn by_factors(all: &Operators, light: &Array2<f64>) -> Array2<f64> {
-    let mut out = light.dot(&all.excited).dot(&all.emitted);
+    let sum = |light: &[f64], (first, weights): &(usize, Vec<f64>)| {
+        light[*first..].iter().zip(weights).map(|(light, weight)| light * weight).sum::<f64>()
+    };
+    let mut out = Array2::zeros((light.nrows(), all.elastic.len()));
+    let mut excited = vec![0.0; all.excited.ncols()];
     for (mut out, light) in out.rows_mut().into_iter().zip(light.rows()) {
         let light = light.to_slice().unwrap();
-        for (value, (first, weights)) in out.iter_mut().zip(&all.elastic) {
-            *value += light[*first..].iter().zip(weights).map(|(light, weight)| light * weight).sum::<f64>();
+        excited.fill(0.0);
+        let mut excitation = 0;
+        for (j, value) in out.iter_mut().enumerate() {
+            while excitation < all.below[j] {
+                let share = sum(light, &all.shares[excitation]);
+                excited.iter_mut().zip(all.excited.row(excitation)).for_each(|(sum, factor)| *sum += share * factor);
+                excitation += 1;
+            }
+            let luminescent: f64 = excited.iter().zip(all.emitted.row(j)).map(|(a, b)| a * b).sum();
+            *value = sum(light, &all.elastic[j]) + luminescent;
         }
     }
     out
