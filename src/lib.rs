@@ -11,6 +11,7 @@
 //! - [`export`]: the document in other people's formats.
 //! - [`validate`]: rules with stable ids, and what they find.
 //! - [`fit`]: least squares over the terms, without a starting point.
+//! - [`donaldson`]: bispectral matrices separated, factorised, estimated from a few lights, and applied to any.
 //! - [`report`]: figures and the HTML page.
 
 pub mod container;

@@ -1,4 +1,5 @@
 //! Reflected light told from luminescence: what is found is what was put in, and where it cannot be told that is said.
+#![cfg(feature = "write")]
 #![allow(unreachable_pub, clippy::unwrap_used)]
 
 mod common {
@@ -6,7 +7,11 @@ mod common {
     pub mod scans;
 }
 
-use bbrf::donaldson::{Matrix, Separate, separate};
+use assert_cmd::Command;
+use bbrf::container::{document_bytes, open_verified, write_file};
+use bbrf::dataset::Document;
+use bbrf::donaldson::{Extend, Light, Luminescence, Matrix, Observer, Reradiation, Separate, separate};
+use bbrf::validate::validate_bytes;
 use common::matrices::{Bispectral, real};
 
 #[test]
@@ -34,26 +39,55 @@ fn the_parts_of_a_known_matrix_are_found() {
     }
 }
 
+/// One factor describes them at their noise, and more of them do not run away next to the diagonal, where nothing holds them.
 #[test]
 fn real_matrices_are_separated_at_their_floor() {
     for (name, measurement) in real() {
         let matrix = Matrix::of(&measurement).unwrap();
-        for rank in [None, Some(1), Some(2), Some(3)] {
-            let found = separate(&matrix, Separate { rank }).unwrap();
-            println!(
-                "{name} {rank:?} -> {} tried {:?} floor {:?} reach {:?}",
-                found.factors.rank(),
-                found.tried,
-                found.floor,
-                found.overlap.reach_nm[0]
-            );
-            let top = found.balance.iter().map(|b| b.photons.value).fold(0.0, f64::max);
-            println!(
-                "   elastic {:.3} .. {:.3}; photons at most {top:.3}; {:?}",
-                found.elastic.iter().copied().fold(f64::INFINITY, f64::min),
-                found.elastic.iter().copied().fold(0.0, f64::max),
-                found.findings
-            );
+        let chosen = separate(&matrix, Separate::default()).unwrap();
+        assert_eq!(chosen.factors.rank(), 1, "{name}: {:?}", chosen.tried);
+        assert!(chosen.factors.rms < 2.0 * chosen.floor.rms, "{name}: {:?} {:?}", chosen.tried, chosen.floor);
+        let photons = chosen.balance.iter().map(|balance| balance.photons.value).fold(0.0, f64::max);
+        assert!((0.1..1.0).contains(&photons), "{name}: {photons}");
+        for rank in 1..=3 {
+            let found = separate(&matrix, Separate { rank: Some(rank) }).unwrap();
+            let colour = |part: Luminescence| {
+                let surface = Reradiation::of(&matrix, &found, part);
+                surface.under(&Light::named("D65").unwrap(), Extend::Zero).colour(Observer::Two).unwrap()
+            };
+            let away = colour(Luminescence::Full).difference(&colour(Luminescence::Factors)).unwrap().de76;
+            println!("{name}, {rank} factors: r.m.s. {:.2e}, CIE76 under D65 {away:.2}", found.factors.rms);
+            assert!(away <= if rank == 1 { 1.7 } else { 4.0 }, "{name} {rank}: {away}");
         }
     }
+}
+
+/// What is written beside the matrix is valid, says which matrix it was made of, and is seen when that changes.
+#[test]
+fn the_parts_are_stored_beside_the_matrix() {
+    let folder = tempfile::tempdir().unwrap();
+    let [file, output] = ["matrix.bbrf", "parts.bbrf"].map(|name| folder.path().join(name));
+    let document = Document { measurements: vec![Bispectral::usual(1).measured(1e-3, 5)], ..Document::default() };
+    write_file(&document, &file).unwrap();
+    let mut command = Command::cargo_bin("bbrf").unwrap();
+    command.args(["donaldson", "separate"]).arg(&file).arg("-o").arg(&output).assert().success();
+    let mut written = open_verified(&output).unwrap();
+    assert_eq!(written.measurement("matrix"), document.measurement("matrix"), "the matrix stays");
+    let factors = written.factorisation("matrix-factors").unwrap();
+    assert_eq!((factors.rank(), factors.misfit()), (1, None));
+    let peak = factors.luminescent(10, 12).unwrap();
+    assert!((peak - Bispectral::usual(1).luminescent(400.0, 500.0)).abs() < 0.003, "{peak}");
+    assert_eq!(factors.luminescent(12, 3), Some(0.0), "no light below the excitation");
+    let rules = |document: &Document| -> Vec<String> {
+        let bytes = document_bytes(document).unwrap().0;
+        validate_bytes(bytes).findings.iter().map(|finding| finding.rule.to_string()).collect()
+    };
+    assert!(!rules(&written).iter().any(|rule| rule.contains("factorisation.")));
+    written.measurements[0].values[(3, 3)] += 0.1;
+    assert!(rules(&written).iter().any(|rule| rule.contains("factorisation.data-changed")), "{:?}", rules(&written));
+    // A second separation does not write over the first.
+    let mut again = Command::cargo_bin("bbrf").unwrap();
+    let third = folder.path().join("third.bbrf");
+    again.args(["donaldson", "separate"]).arg(format!("{}#matrix", output.display())).arg("-o").arg(&third);
+    again.assert().code(2).stderr(predicates::str::contains("already"));
 }
