@@ -26,17 +26,18 @@ pub struct Parts {
 pub fn parts(measurement: &Measurement, matrix: &Matrix, separated: &Separated, data_digest: &str) -> Option<Parts> {
     let EmissionAxis::Wavelengths(axis) = &measurement.emission else { return None };
     Some(Parts {
-        elastic: elastic(measurement, axis, separated),
+        elastic: elastic(measurement, axis, &separated.elastic, &separated.elastic_sigma),
         luminescent: luminescent(measurement, matrix, separated),
         factorisation: factorisation(measurement, matrix, axis, separated, data_digest),
     })
 }
 
-fn named(measurement: &Measurement, what: &str) -> Id {
+pub(super) fn named(measurement: &Measurement, what: &str) -> Id {
     Id::from_title(&format!("{}-{what}", measurement.id))
 }
 
-fn elastic(measurement: &Measurement, axis: &WavelengthAxis, separated: &Separated) -> Measurement {
+/// The elastic radiance factor of a matrix, one row.
+pub(super) fn elastic(measurement: &Measurement, axis: &WavelengthAxis, elastic: &[f64], sigma: &[f64]) -> Measurement {
     let row = |numbers: &[f64]| Array2::from_shape_fn((1, numbers.len()), |(_, column)| numbers[column]);
     let geometry = measurement.acquisitions.first().and_then(|row| row.geometry);
     let same = measurement.acquisitions.iter().all(|row| row.geometry == geometry);
@@ -48,7 +49,7 @@ fn elastic(measurement: &Measurement, axis: &WavelengthAxis, separated: &Separat
         basis: Basis::Energy,
         ..measurement.quantity.clone()
     };
-    let values = row(&separated.elastic);
+    let values = row(elastic);
     let flags = values.mapv(|value| if value.is_nan() { Flag::NotMeasured.bit() } else { 0 });
     Measurement {
         title: measurement.title.as_ref().map(|title| format!("{title}: elastic part")),
@@ -56,10 +57,7 @@ fn elastic(measurement: &Measurement, axis: &WavelengthAxis, separated: &Separat
         instrument: measurement.instrument.clone(),
         white_reference: measurement.white_reference.clone(),
         flags: flags.into_shared(),
-        uncertainty: Uncertainty {
-            standard: Some(row(&separated.elastic_sigma).into_shared()),
-            ..measurement.uncertainty.clone()
-        },
+        uncertainty: Uncertainty { standard: Some(row(sigma).into_shared()), ..measurement.uncertainty.clone() },
         conditions: measurement.conditions.clone(),
         ..Measurement::new(
             named(measurement, "elastic"),
@@ -87,6 +85,16 @@ fn luminescent(measurement: &Measurement, matrix: &Matrix, separated: &Separated
             }
         }
     }
+    luminescent_part(measurement, values, sigma, flags)
+}
+
+/// The luminescent part of a matrix, cell by cell.
+pub(super) fn luminescent_part(
+    measurement: &Measurement,
+    values: Array2<f64>,
+    sigma: Array2<f64>,
+    flags: Array2<u16>,
+) -> Measurement {
     Measurement {
         id: named(measurement, "luminescent"),
         title: measurement.title.as_ref().map(|title| format!("{title}: luminescent part")),

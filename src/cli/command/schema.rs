@@ -23,6 +23,7 @@ pub(crate) fn all() -> Vec<(&'static str, Schema)> {
         ("convert", schema_for!(super::convert::ConvertResult)),
         ("convert-model", schema_for!(super::convert::ConvertModelResult)),
         ("design", schema_for!(super::design::DesignResult)),
+        ("donaldson-estimate", schema_for!(super::donaldson::estimate::EstimateResult)),
         ("donaldson-separate", schema_for!(super::donaldson::separate::SeparateResult)),
         ("document", schema_for!(Document)),
         ("donaldson-predict", schema_for!(super::donaldson::predict::PredictResult)),

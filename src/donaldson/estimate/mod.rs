@@ -3,20 +3,31 @@
 //!
 //! For a known excitation spectrum two lights give reflectance and emission at each wavelength, unless their ratio E/C is the
 //! same there: then the determinant is 0 and division gives anything. Reflectance and emission are therefore estimated over
-//! all wavelengths together, under the stated prior that they are smooth and not negative; where the lights alone leave
-//! the reflectance uncertain, the band is named.
+//! all wavelengths together, under a stated prior; where the lights alone leave the reflectance uncertain, the band is named.
 //!
-//! The excitation spectrum must be known, from a matrix of the same dye or from a fluorimeter: two lights fit a wrong one
-//! perfectly, with every number positive.
+//! Two lights fit a wrong excitation spectrum perfectly, with every number positive: luminescence that is excited just below
+//! its emission looks like reflection. What an unknown one leaves open is a set, and its spread is the answer. The photon balance
+//! bounds it: what looks like reflection would need more photons than fall in.
 
-mod linear;
+mod findings;
+mod lit;
+mod prior;
+mod problem;
+mod random;
+mod set;
+mod shapes;
+mod store;
 mod third;
+mod truncated;
+mod walk;
 
-pub use linear::{Estimate, estimate_known};
+pub(crate) use findings::bands;
+pub use lit::Spectrum;
+pub use set::{Estimate, Excitation, Interval, Range, UNTOLD, estimate};
+pub use store::{matrix, parts};
 pub use third::{Helpful, third_light};
 
-/// Standard uncertainty of the reflectance, from the lights alone, beyond which a band counts as not told.
-pub const UNTOLD: f64 = 0.05;
+use crate::quantity::QuantityKind;
 
 /// The wavelengths of the matrix.
 #[derive(Debug, Clone, PartialEq)]
@@ -25,6 +36,8 @@ pub struct Axes {
     pub excitation_nm: Vec<f64>,
     /// Emission, nm, ascending.
     pub emission_nm: Vec<f64>,
+    /// The emission width that a luminescent value holds, nm.
+    pub width_nm: f64,
 }
 
 /// A light as the matrix sees it.
@@ -80,6 +93,19 @@ pub enum NoEstimate {
         value: f64,
         /// What it should be.
         expected: &'static str,
+    },
+    /// Numbers that are not in the unit of the light.
+    #[error(
+        "light `{light}` is `{of_light}` and the spectrum under it `{found}`; expected a radiance factor, or a spectral radiance \
+         under a spectral irradiance or under the spectral radiance of a white: otherwise their ratio is unknown"
+    )]
+    Units {
+        /// The light.
+        light: String,
+        /// What the spectrum holds.
+        found: QuantityKind,
+        /// What the light holds.
+        of_light: QuantityKind,
     },
     /// Nothing to solve.
     #[error("the spectra determine no estimate: too few values, or lights without power")]

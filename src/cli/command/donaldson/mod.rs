@@ -1,9 +1,11 @@
 //! `bbrf donaldson`: bispectral matrices, one file per step.
 
+pub(crate) mod estimate;
 mod light_source;
 mod material;
 pub(crate) mod predict;
 pub(crate) mod separate;
+mod spectrum_source;
 
 use clap::Subcommand;
 
@@ -19,12 +21,14 @@ pub(crate) struct Arguments {
 #[derive(Debug, Subcommand)]
 enum Step {
     Separate(separate::Arguments),
+    Estimate(Box<estimate::Arguments>),
     Predict(Box<predict::Arguments>),
 }
 
 pub(crate) fn run(arguments: &Arguments) -> CommandResult {
     match &arguments.step {
         Step::Separate(arguments) => separate::run(arguments),
+        Step::Estimate(arguments) => estimate::run(arguments),
         Step::Predict(arguments) => predict::run(arguments),
     }
 }
