@@ -1,7 +1,7 @@
 //! `bbrf donaldson`: bispectral matrices, one file per step.
 
-mod light_source;
-mod material;
+pub(super) mod light_source;
+pub(super) mod material;
 pub(crate) mod predict;
 pub(crate) mod separate;
 
