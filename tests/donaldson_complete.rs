@@ -1,68 +1,26 @@
-//! A complete model gives what its parts give, keeps the two kinds of light apart, says what it does not know, and notices a matrix
-//! of another surface.
+//! A complete model gives what its parts give, keeps the two kinds of light apart, and says what it does not know.
 #![cfg(feature = "write")]
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test")]
 
 mod common {
     pub mod bispectral;
+    pub mod completed;
     pub mod documents;
     pub mod matrices;
     pub mod scans;
 }
 
-use bbrf::container::{Limits, document_bytes, measurement_digest, read_bytes};
-use bbrf::dataset::{
-    Acquisition, Document, Excitation, Id, Instrument, Measurement, Model, NotComplete, ReflectanceSource, Role,
-};
+use bbrf::container::measurement_digest;
+use bbrf::dataset::{Document, Id, Instrument, NotComplete, ReflectanceSource};
 use bbrf::donaldson::{
-    Complete, Consistency, Extend, Light, Luminescence, Matrix, NoComplete, Reradiation, Separate, attach, separate,
+    Complete, Extend, Light, Luminescence, Matrix, NoComplete, Reradiation, Separate, attach, separate,
 };
 use bbrf::fit::{FitOptions, fit_measurement};
-use bbrf::quantity::{
-    Bandpass, Component, CorrelatedOver, EmissionAxis, Flag, Geometry, Part, Quantity, QuantityKind, Reference,
-    SignHabit, Uncertainty, WavelengthAxis,
-};
+use bbrf::quantity::{Flag, QuantityKind, Reference};
 use bbrf::terms::{Denominator, Distribution, Term, TermKind, TorranceSparrow};
-use common::documents::measured_document;
+use common::completed::{complete, completed, digest, luminescence_scan, signed, with_matrix};
 use common::matrices::Bispectral;
-use common::scans::{Random, Truth, paper_grid};
-use ndarray::Array2;
-
-const TRUTH: Truth = Truth { albedo: 0.6, intensity: 8.0, roughness: 0.2, index_minus_one: 0.5 };
-
-fn signed(incidence: f64, viewing: f64) -> Geometry {
-    Geometry::from_signed(incidence, viewing, SignHabit::MirrorAtEqual).unwrap()
-}
-
-fn digest(part: &Measurement) -> Result<String, String> {
-    measurement_digest(part).map_err(|error| error.to_string())
-}
-
-fn fit(document: &Document) -> Model {
-    let scan = document.measurement("scan").unwrap();
-    let options = FitOptions { data_digest: measurement_digest(scan).unwrap(), ..FitOptions::default() };
-    fit_measurement(document, scan, &options).unwrap()
-}
-
-/// The document with its scan fitted and the matrix attached, as it comes back from a file.
-fn completed(mut document: Document) -> (Document, Consistency) {
-    let mut model = fit(&document);
-    let consistency = attach(&mut document, &mut model, "matrix", digest).unwrap();
-    document.models.push(model);
-    let bytes = document_bytes(&document).unwrap().0;
-    (read_bytes(bytes, &Limits::default()).unwrap().document, consistency)
-}
-
-/// A reflecting scan in one band beside a matrix.
-fn with_matrix(matrix: Measurement) -> Document {
-    let mut document = measured_document(&paper_grid(), Reference::None, &[TRUTH], 0.01, &mut Random::new(3));
-    document.measurements.push(matrix);
-    document
-}
-
-fn complete(document: &Document) -> Complete {
-    Complete::of(document, &document.models[0]).unwrap()
-}
+use common::scans::Random;
 
 /// D G F over cos(theta_i), written down once more: in the plane, Gaussian of half height, exact Fresnel.
 fn specular_by_hand(term: &TorranceSparrow, incidence: f64, viewing: f64) -> f64 {
@@ -339,211 +297,6 @@ fn a_matrix_over_a_fixed_reference_is_brought_to_its_own_geometry() {
     let complete = complete(&document);
     assert!((complete.surface().elastic[5] / direct.elastic[5] - 2.0).abs() < 1e-12);
     assert!((complete.surface().density[(8, 14)] / direct.density[(8, 14)] - 2.0).abs() < 1e-12);
-}
-
-/// Sets of angles for scans of luminescence.
-fn angles() -> Vec<Geometry> {
-    let all = [0.0, 20.0, 35.0, 50.0, 65.0].into_iter();
-    all.flat_map(|i| [-45.0, -10.0, 15.0, 55.0].map(|v| signed(i, v))).collect()
-}
-
-/// A scan of the luminescence under a band of 10 nm at 375 nm, of the irradiance of `lamp_of`, on a grid of its own.
-fn luminescence_scan(surface: &Bispectral, relative: f64, random: &mut Random) -> Measurement {
-    let nm: Vec<f64> = (0..98).map(|k| 392.0 + 4.0 * f64::from(k)).collect();
-    let geometries = angles();
-    // The density straight between 370 and 380 nm under a triangle of 10 nm at 375 nm, of height 1: what lies between them and
-    // what lies beyond has a share of the triangle each.
-    let shares = [(360.0, 1.0 / 48.0), (370.0, 23.0 / 48.0), (380.0, 23.0 / 48.0), (390.0, 1.0 / 48.0)];
-    let emitted =
-        |nm: f64| shares.iter().map(|(x, share)| 10.0 * share * surface.luminescent(*x, nm) / 10.0).sum::<f64>();
-    let exact = Array2::from_shape_fn((geometries.len(), nm.len()), |(row, column)| {
-        geometries[row].incidence.cos_theta() * emitted(nm[column]) / std::f64::consts::PI
-    });
-    let peak = exact.iter().copied().fold(0.0, f64::max);
-    let sigma = exact.mapv(|value| relative * value.hypot(0.02 * peak));
-    let values = Array2::from_shape_fn(exact.dim(), |at| exact[at] + sigma[at] * random.normal());
-    let quantity = Quantity::absolute(QuantityKind::SpectralRadiance, Part::Luminescent);
-    let rows = geometries
-        .iter()
-        .zip(0..)
-        .map(|(geometry, order)| Acquisition { excitation: Some(0), ..Acquisition::at(Some(*geometry), order) });
-    let state = Excitation { wavelength_nm: Some(375.0), fwhm_nm: Some(10.0), ..Excitation::default() };
-    let axis = EmissionAxis::Wavelengths(WavelengthAxis::new(nm, Bandpass::Unstated).unwrap());
-    Measurement {
-        excitations: vec![state],
-        uncertainty: Uncertainty { standard: Some(sigma.into_shared()), ..Uncertainty::default() },
-        ..Measurement::new(Id::new("scan").unwrap(), Role::Sample, quantity, axis, rows.collect(), values)
-    }
-}
-
-/// The band of that scan as a light of the file, W m-2 nm-1.
-fn lamp_of(height: f64) -> bbrf::dataset::Light {
-    bbrf::dataset::Light {
-        id: Id::new("diode").unwrap(),
-        spectrum: Some(bbrf::dataset::LightSpectrum {
-            quantity: Quantity::absolute(QuantityKind::SpectralIrradiance, Part::Total),
-            axis: WavelengthAxis::new(vec![365.0, 375.0, 385.0], Bandpass::Unstated).unwrap(),
-            values: vec![0.0, height, 0.0],
-            flags: vec![0; 3],
-        }),
-        ..bbrf::dataset::Light::default()
-    }
-}
-
-fn checked(document: Document) -> Consistency {
-    let mut model = fit(&document);
-    let mut document = document;
-    attach(&mut document, &mut model, "matrix", digest).unwrap()
-}
-
-#[test]
-fn the_right_matrix_is_let_through_and_a_wrong_one_is_told() {
-    let mut random = Random::new(20);
-    let right = Bispectral { has_sigma: true, ..Bispectral::usual(1) };
-    let mut wrong = right.clone();
-    // Another dye, that emits 4 nm further to the red.
-    wrong.fluorophores[0][2] += 4.0;
-    let (mut alarms, mut told, mut sum) = (0, 0, 0.0);
-    let trials = 300;
-    for trial in 0..trials {
-        let scan = luminescence_scan(&right, 0.02, &mut random);
-        let of = |surface: &Bispectral| {
-            let matrix = surface.measured(3e-4, 1000 + trial);
-            checked(Document { measurements: vec![scan.clone(), matrix], ..Document::default() })
-        };
-        let (good, bad) = (of(&right), of(&wrong));
-        assert_eq!((good.shapes.len(), bad.shapes.len()), (1, 1), "{:?}", good.findings);
-        sum += good.shapes[0].reduced_chi_square;
-        alarms += u32::from(!good.agrees());
-        told += u32::from(!bad.agrees());
-    }
-    println!(
-        "{trials} trials: {alarms} false alarms, {told} wrong matrices told, mean chi-square {}",
-        sum / f64::from(trials as u32)
-    );
-    // One in a hundred is stated: 3 are expected, more than 8 come by chance in one of a thousand such tests.
-    assert!(alarms <= 8, "{alarms} of {trials}");
-    assert!(told >= trials as u32 * 95 / 100, "{told} of {trials}");
-    let mean = sum / trials as f64;
-    assert!((0.8..1.15).contains(&mean), "mean reduced chi-square {mean}");
-}
-
-#[test]
-fn the_level_is_checked_where_the_irradiance_is_known_and_only_there() {
-    let mut random = Random::new(21);
-    let surface = Bispectral { has_sigma: true, ..Bispectral::usual(1) };
-    let mut scan = luminescence_scan(&surface, 0.02, &mut random);
-    let matrix = surface.measured(3e-4, 31);
-    let without = checked(Document { measurements: vec![scan.clone(), matrix.clone()], ..Document::default() });
-    assert!(without.shapes[0].level.is_none());
-    assert!(
-        without.findings.iter().any(|finding| finding.contains("level cannot be checked")),
-        "{:?}",
-        without.findings
-    );
-    scan.excitations[0].light = Some(Id::new("diode").unwrap());
-    for (height, agrees) in [(1.0, true), (1.2, false)] {
-        let document = Document {
-            measurements: vec![scan.clone(), matrix.clone()],
-            lights: vec![lamp_of(height)],
-            ..Document::default()
-        };
-        let found = checked(document);
-        let level = found.shapes[0].level.unwrap();
-        assert!((level.ratio * height - 1.0).abs() < 3.0 * level.sigma, "{level:?}");
-        assert_eq!((found.shapes[0].agrees(), level.agrees(), found.agrees()), (true, agrees, agrees), "{found:#?}");
-    }
-    // A scale that the certificate leaves open is no disagreement.
-    let mut document = Document { measurements: vec![scan, matrix], lights: vec![lamp_of(1.2)], ..Document::default() };
-    document.measurements[0].uncertainty.components = vec![Component::new("scale", vec![0.2], CorrelatedOver::All)];
-    assert!(checked(document).agrees());
-}
-
-/// An elastic scan with an albedo for each wavelength.
-fn elastic_scan(surface: &Bispectral, random: &mut Random) -> Document {
-    let nm: Vec<f64> = (0..81).map(|k| 380.0 + 5.0 * f64::from(k)).collect();
-    let truths: Vec<Truth> = nm.iter().map(|nm| Truth { albedo: surface.reflectance(*nm), ..TRUTH }).collect();
-    let mut document = measured_document(&paper_grid(), Reference::None, &truths, 0.01, random);
-    let scan = &mut document.measurements[0];
-    scan.quantity.part = Part::Elastic;
-    scan.emission = EmissionAxis::Wavelengths(WavelengthAxis::new(nm, Bandpass::Unstated).unwrap());
-    document
-}
-
-#[test]
-fn an_elastic_scan_of_all_wavelengths_says_the_reflectance_itself() {
-    let surface = Bispectral { has_sigma: true, ..Bispectral::usual(1) };
-    let mut document = elastic_scan(&surface, &mut Random::new(22));
-    document.measurements.push(surface.measured(3e-4, 41));
-    let mut model = {
-        let scan = document.measurement("scan").unwrap();
-        let options = FitOptions {
-            data_digest: measurement_digest(scan).unwrap(),
-            reduction: bbrf::dataset::Reduction::None,
-            ..FitOptions::default()
-        };
-        fit_measurement(&document, scan, &options).unwrap()
-    };
-    let found = attach(&mut document, &mut model, "matrix", digest).unwrap();
-    assert!(found.agrees() && found.shapes.len() == 1, "{found:#?}");
-    assert!((found.shapes[0].level.unwrap().ratio - 1.0).abs() < 0.02);
-    document.models.push(model);
-    let complete = complete(&document);
-    assert_eq!(complete.reflectance(), ReflectanceSource::Terms);
-    let geometry = signed(30.0, -10.0);
-    let lit = complete.under(&Light::named("E").unwrap(), Extend::Zero);
-    let radiated = lit.at(&geometry);
-    let model = &document.models[0];
-    for (j, nm) in complete.emission_nm().iter().enumerate() {
-        let column = model.emission.wavelengths().unwrap().iter().position(|one| one == nm).unwrap();
-        let albedo = model.terms[0].parameter_at("albedo", column).unwrap();
-        let e = lit.prediction().irradiance[j];
-        assert!((radiated.diffuse[j] / e - albedo * 30.0_f64.to_radians().cos()).abs() < 1e-12);
-        let known = model.prediction_uncertainty(column, &geometry, &Reference::None).unwrap().standard.unwrap();
-        let expected = (known * e).hypot(radiated.luminescent_sigma[j]);
-        assert!((radiated.total_sigma[j] / expected - 1.0).abs() < 1e-9);
-    }
-    // A surface whose edge lies 10 nm elsewhere.
-    let mut other = Bispectral::usual(1).measured(3e-4, 42);
-    other.id = Id::new("other").unwrap();
-    for row in 0..49 {
-        for column in 1..41 {
-            if 300.0 + 10.0 * row as f64 == 380.0 + 10.0 * column as f64 {
-                other.values[(row, column)] += surface.reflectance(370.0 + 10.0 * column as f64)
-                    - surface.reflectance(380.0 + 10.0 * column as f64);
-            }
-        }
-    }
-    document.measurements.push(other);
-    let mut model = document.models[0].clone();
-    let found = attach(&mut document, &mut model, "other", digest).unwrap();
-    assert!(!found.agrees(), "{found:#?}");
-}
-
-#[test]
-fn what_cannot_be_checked_is_said() {
-    let surface = Bispectral::usual(1);
-    let (_, band) = completed(with_matrix(surface.measured(1e-4, 51)));
-    assert!(band.shapes.is_empty() && band.agrees());
-    assert!(band.findings.iter().any(|finding| finding.contains("one band only")), "{:?}", band.findings);
-    let mut random = Random::new(52);
-    let mut scan = luminescence_scan(&surface, 0.02, &mut random);
-    scan.excitations[0].wavelength_nm = Some(250.0);
-    let document = |scan: &Measurement| Document {
-        measurements: vec![scan.clone(), surface.measured(1e-4, 53)],
-        ..Document::default()
-    };
-    let outside = checked(document(&scan));
-    assert!(outside.shapes.is_empty(), "{outside:?}");
-    assert!(outside.findings.iter().any(|finding| finding.contains("from 300 to 780 nm")), "{:?}", outside.findings);
-    scan.excitations.clear();
-    scan.acquisitions.iter_mut().for_each(|row| row.excitation = None);
-    let unknown = checked(document(&scan));
-    assert!(
-        unknown.findings.iter().any(|finding| finding.contains("does not say what fell")),
-        "{:?}",
-        unknown.findings
-    );
 }
 
 #[test]

@@ -92,7 +92,7 @@ impl Complete {
         if parts.matrix.quantity.basis == Basis::Photon {
             return Err(NoComplete::Photons(parts.matrix.id.to_string()));
         }
-        let geometry = parts.elastic.acquisitions[0].geometry.filter(|one| is_above(one));
+        let geometry = parts.elastic.acquisitions[0].geometry.filter(is_above);
         let surface = Reradiation::of_stored(&parts)?;
         let factor = to_same_geometry(parts.matrix, geometry.as_ref())?;
         let surface = if factor == 1.0 { surface } else { surface.scaled(factor) };
