@@ -244,6 +244,8 @@ pub fn clean() -> Document {
         ),
         bispectral("matrix", QuantityKind::DonaldsonMatrix, Part::Total, NormalisedAt::Excitation),
     ];
+    let parts = separated(&measurements[3]);
+    measurements.extend(parts);
     measurements.iter_mut().for_each(Measurement::state_directions);
     let spectrum = LightSpectrum {
         quantity: Quantity::absolute(QuantityKind::RelativeSpectrum, Part::Total),
@@ -311,11 +313,35 @@ pub fn clean() -> Document {
         },
         extensions: vec![extension()],
     };
-    let model = model(&document);
-    document.models.push(model);
     let factorisation = factorisation(&document);
     document.factorisations.push(factorisation);
+    let model = model(&document);
+    document.models.push(model);
     document
+}
+
+/// What the matrix reflects at its own wavelength, and what it emits elsewhere.
+fn separated(matrix: &Measurement) -> [Measurement; 2] {
+    let nm = matrix.emission.wavelengths().expect("wavelengths");
+    let row_of = |column: usize| matrix.excitations.iter().position(|state| state.wavelength_nm == Some(nm[column]));
+    let mut luminescent = Measurement { id: id("matrix-luminescent"), ..matrix.clone() };
+    luminescent.quantity.part = Part::Luminescent;
+    let mut elastic = Measurement { id: id("matrix-elastic"), excitations: Vec::new(), ..matrix.clone() };
+    let row = Acquisition::at(matrix.acquisitions[0].geometry, 0);
+    elastic.acquisitions = vec![row];
+    elastic.quantity.kind = QuantityKind::RadianceFactor;
+    elastic.quantity.part = Part::Elastic;
+    elastic.quantity.normalised_at = NormalisedAt::Emission;
+    let reflected = |(_, column): (usize, usize)| row_of(column).map_or(f64::NAN, |row| matrix.values[(row, column)]);
+    let shape = (1, nm.len());
+    elastic.values = Array2::from_shape_fn(shape, reflected).into_shared();
+    elastic.flags = elastic.values.mapv(|value| if value.is_nan() { Flag::NotMeasured.bit() } else { 0 }).into_shared();
+    elastic.uncertainty.standard = Some(Array2::from_elem(shape, 0.01).into_shared());
+    for (row, column) in (0..nm.len()).filter_map(|column| Some((row_of(column)?, column))) {
+        luminescent.values[(row, column)] = 0.0;
+        luminescent.flags[(row, column)] = Flag::Interpolated.bit();
+    }
+    [elastic, luminescent]
 }
 
 /// What the matrix was made of: one emission spectrum whatever excites it.
@@ -365,6 +391,8 @@ fn model(document: &Document) -> Model {
         "torrance-sparrow.roughness",
         "torrance-sparrow.refractive_index",
     ];
+    let digest =
+        |part: &str| measurement_digest(document.measurement(part).expect("the part")).expect("a storable part");
     let mut model = Model {
         id: id("fit"),
         title: None,
@@ -384,6 +412,15 @@ fn model(document: &Document) -> Model {
         method: "made".to_owned(),
         identifiability: Vec::new(),
         separability: None,
+        donaldson: Some(Attachment {
+            factorisation: id("factors"),
+            elastic: id("matrix-elastic"),
+            elastic_digest: digest("matrix-elastic"),
+            luminescent: id("matrix-luminescent"),
+            luminescent_digest: digest("matrix-luminescent"),
+            reflectance: ReflectanceSource::Matrix,
+            consistency: vec!["the scan is one band: its shape cannot be checked".to_owned()],
+        }),
     };
     model.residuals = residuals(&model, &data, 4).expect("complete terms").1;
     model

@@ -35,6 +35,10 @@ fn matrix(document: &mut Document) -> &mut Measurement {
     &mut document.measurements[3]
 }
 
+fn attached(document: &mut Document) -> &mut Attachment {
+    document.models[0].donaldson.as_mut().expect("a matrix")
+}
+
 fn axis(measurement: &mut Measurement) -> &mut WavelengthAxis {
     match &mut measurement.emission {
         EmissionAxis::Wavelengths(axis) => axis,
@@ -423,6 +427,18 @@ pub const FAULTS: &[Fault] = &[
     }),
     d("model.albedo", "diffuse", |d| d.models[0].terms[0].parameters[0].value = vec![1.02]),
     d("model.albedo", "specular", |d| d.models[0].terms[1].parameters[0].value = vec![800.0]),
+
+    d("model.donaldson", "another-part", |d| attached(d).luminescent = id("matrix")),
+    d("model.donaldson", "a-scan-for-the-elastic-part", |d| attached(d).elastic = id("scan")),
+    d("model.donaldson", "another-axis", |d| {
+        let part = d.measurements.iter_mut().find(|one| one.id == id("matrix-elastic")).expect("the elastic part");
+        axis(part).nm[0] -= 1.0;
+    }),
+    d("model.donaldson", "albedo-of-a-band", |d| attached(d).reflectance = ReflectanceSource::Terms),
+    d("model.data-changed", "elastic-part", |d| attached(d).elastic_digest = format!("sha256:{}", "0".repeat(64))),
+    d("reference.dangling", "factors-of-a-model", |d| attached(d).factorisation = id("other")),
+    d("reference.dangling", "elastic-part-of-a-model", |d| attached(d).elastic = id("other")),
+    d("reference.dangling", "luminescent-part-of-a-model", |d| attached(d).luminescent = id("other")),
 
     d("calibration.date-form", "slashes", |d| d.instruments[0].calibration[0].date = Some("11/22/26".into())),
     d("calibration.date-form", "no-such-day", |d| d.instruments[0].calibration[0].expires = Some("2027-02-30".into())),

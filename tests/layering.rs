@@ -13,7 +13,7 @@ const ARROWS: &[(&str, &[&str])] = &[
     ("export", &["dataset", "quantity"]),
     ("validate", &["container", "dataset", "terms", "quantity"]),
     ("fit", &["dataset", "terms", "quantity"]),
-    ("donaldson", &["dataset", "quantity"]),
+    ("donaldson", &["dataset", "terms", "quantity"]),
     ("simulate", &["donaldson", "dataset", "terms", "quantity"]),
     ("cost", &["fit", "simulate", "container", "dataset"]),
     // Drawings of fitted terms name what terms and quantities name.

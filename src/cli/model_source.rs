@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::opened::open;
 use crate::dataset::{Document, Model, ParameterCovariance};
+use crate::donaldson::Complete;
 use crate::quantity::Reference;
 use crate::terms::{Term, TermKind};
 
@@ -68,15 +69,7 @@ pub(crate) fn load(model: &str) -> Result<Loaded, miette::Report> {
         return from_json(path, &bytes);
     }
     let document = open(path.as_ref())?.document;
-    let ids = || document.models.iter().map(|m| m.id.to_string()).collect::<Vec<_>>().join(", ");
-    let model = match (id, document.models.as_slice()) {
-        (Some(id), _) => {
-            document.model(id).ok_or_else(|| miette!("{path}: no model `{id}`; the file holds: {}", ids()))?
-        }
-        (None, [one]) => one,
-        (None, []) => return Err(miette!("{path}: holds no model; make one with `bbrf fit {path} -o OUT`")),
-        (None, _) => return Err(miette!("{path}: holds several models ({}); name one as {path}#ID", ids())),
-    };
+    let model = pick(&document, path, id)?;
     let nm = model.emission.wavelengths();
     let bands = (0..model.emission.len())
         .map(|emission| {
@@ -86,6 +79,35 @@ pub(crate) fn load(model: &str) -> Result<Loaded, miette::Report> {
         .collect::<Result<Bands, miette::Report>>()?;
     let covariance = (0..model.emission.len()).map(|emission| model.parameter_covariance(emission)).collect();
     Ok(Loaded { bands, covariance, value: meaning(&document, model), reference: Some(model.reference) })
+}
+
+/// The complete model that a name stands for: `FILE.bbrf#ID`, `FILE.bbrf` where it holds one model.
+pub(crate) fn load_complete(name: &str) -> Result<Complete, miette::Report> {
+    let (path, id) = match name.rsplit_once('#') {
+        Some((path, id)) => (path, Some(id)),
+        None => (name, None),
+    };
+    let document = open(path.as_ref())?.document;
+    let model = pick(&document, path, id)?;
+    Complete::of(&document, model).map_err(|error| {
+        miette!(
+            help = "`bbrf fit SCAN.bbrf --donaldson MATRIX.bbrf -o OUT.bbrf` makes a complete model; --light and --excitation need one",
+            "{path}: {error}"
+        )
+    })
+}
+
+/// The model of that id in a document, or its only one.
+fn pick<'a>(document: &'a Document, path: &str, id: Option<&str>) -> Result<&'a Model, miette::Report> {
+    let ids = || document.models.iter().map(|m| m.id.to_string()).collect::<Vec<_>>().join(", ");
+    match (id, document.models.as_slice()) {
+        (Some(id), _) => {
+            document.model(id).ok_or_else(|| miette!("{path}: no model `{id}`; the file holds: {}", ids()))
+        }
+        (None, [one]) => Ok(one),
+        (None, []) => Err(miette!("{path}: holds no model; make one with `bbrf fit {path} -o OUT`")),
+        (None, _) => Err(miette!("{path}: holds several models ({}); name one as {path}#ID", ids())),
+    }
 }
 
 fn meaning(document: &Document, model: &Model) -> ValueMeaning {

@@ -38,6 +38,7 @@ pub mod name {
     pub const PROVENANCE: &str = "provenance";
     pub const DERIVATION: &str = "derivation";
     pub const SEPARABILITY: &str = "separability";
+    pub const DONALDSON: &str = "donaldson";
     pub const TERM: &str = "term_";
     pub const PARAMETER: &str = "parameter_";
     pub const COMPONENT: &str = "value_u_shared_";
@@ -143,6 +144,11 @@ pub mod name {
     pub const EXCITATION_FACTOR: &str = "excitation_factor";
     pub const EMISSION_FACTOR: &str = "emission_factor";
     pub const ELASTIC: &str = "elastic";
+    pub const ELASTIC_DIGEST: &str = "elastic_digest";
+    pub const LUMINESCENT: &str = "luminescent";
+    pub const LUMINESCENT_DIGEST: &str = "luminescent_digest";
+    pub const REFLECTANCE: &str = "reflectance";
+    pub const CONSISTENCY: &str = "consistency";
     pub const REACH: &str = "reach";
     pub const FLOOR: &str = "floor";
     pub const RESIDUAL_RMS: &str = "residual_rms";

@@ -113,6 +113,15 @@ pub(super) const TABLE: &[Entry] = &[
     d("/model/*/separability/mean_over_incidence", "float64", "*", "mean over incidence"),
     d("/model/*/separability/spread_over_incidence", "float64", "*", "its standard deviation"),
 
+    g("/model/*/donaldson", "the separated matrix that makes the model complete"),
+    a("/model/*/donaldson@factorisation", "string", "", "identifier of the factors; they name the matrix"),
+    a("/model/*/donaldson@elastic", "string", "", "identifier of the elastic part of the matrix"),
+    a("/model/*/donaldson@elastic_digest", "string", "", "digest of that measurement as it was then"),
+    a("/model/*/donaldson@luminescent", "string", "", "identifier of the luminescent part of the matrix"),
+    a("/model/*/donaldson@luminescent_digest", "string", "", "digest of that measurement as it was then"),
+    a("/model/*/donaldson@reflectance", "string", "", "where the diffuse reflectance comes from: matrix or terms"),
+    d("/model/*/donaldson/consistency", "string", "", "how scan and matrix go together, one sentence each"),
+
     // Shared by every group that has them.
     d("/**/value", "float64", "*", "values, rows x emission; NaN only where a flag says why"),
     a("/**/value@quantity", "string", "", "what a number is"),

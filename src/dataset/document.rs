@@ -111,7 +111,7 @@ impl Document {
         let references = unique("white_references", self.white_references.iter().map(|part| &part.id))?;
         let measurements = unique("measurements", self.measurements.iter().map(|part| &part.id))?;
         unique("models", self.models.iter().map(|part| &part.id))?;
-        unique("factorisations", self.factorisations.iter().map(|part| &part.id))?;
+        let factorisations = unique("factorisations", self.factorisations.iter().map(|part| &part.id))?;
         unique("extensions", self.extensions.iter().map(|part| &part.domain))?;
         for measurement in &self.measurements {
             measurement.check_shape()?;
@@ -129,7 +129,13 @@ impl Document {
             }
         }
         for model in &self.models {
-            present(&format!("models/{}", model.id), "measurements", Some(&model.measurement), &measurements)?;
+            let from = format!("models/{}", model.id);
+            present(&from, "measurements", Some(&model.measurement), &measurements)?;
+            if let Some(attachment) = &model.donaldson {
+                present(&from, "factorisations", Some(&attachment.factorisation), &factorisations)?;
+                present(&from, "measurements", Some(&attachment.elastic), &measurements)?;
+                present(&from, "measurements", Some(&attachment.luminescent), &measurements)?;
+            }
         }
         for part in &self.factorisations {
             present(&format!("factorisations/{}", part.id), "measurements", Some(&part.measurement), &measurements)?;

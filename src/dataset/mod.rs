@@ -6,7 +6,9 @@
 //!
 //! *Invariant:* prediction, residual and reduction are defined here, once; whoever fits, validates or draws uses them.
 
+mod adopt;
 mod anonymise;
+mod attachment;
 mod bound;
 mod calibration;
 mod conditions;
@@ -32,7 +34,9 @@ mod sample;
 pub mod tree;
 mod twin;
 
+pub use adopt::{Adopted, is_same_part};
 pub use anonymise::{Anonymised, Suspect};
+pub use attachment::{Attached, Attachment, NotComplete, ReflectanceSource};
 pub use bound::{Bound, Side};
 pub use calibration::Calibration;
 pub use conditions::Conditions;
@@ -49,7 +53,7 @@ pub use mask::{Mask, UnknownMask};
 pub use measurement::{Acquisition, Derivation, Excitation, Measurement, Role, ShapeError};
 pub use model::{FittedParameter, FittedTerm, Model, Residuals, Separability};
 pub use place::Place;
-pub use prediction_uncertainty::{ParameterCovariance, PredictionError, PredictionUncertainty};
+pub use prediction_uncertainty::{Look, ParameterCovariance, PredictionError, PredictionUncertainty};
 pub use provenance::{Assumption, InputFile, Notice, Provenance, Receipt, Step};
 pub use reduce::{ReduceError, Reduced, Reduction, UnknownReduction, reduce};
 pub use residual::{Prediction, TermsError, predict, residuals};

@@ -3,7 +3,7 @@
 use ndarray::{ArcArray, ArrayView2, Axis, Ix3};
 use serde::{Deserialize, Serialize};
 
-use super::Id;
+use super::{Attachment, Id};
 use crate::quantity::{EmissionAxis, Reference, tables_plain};
 use crate::terms::{Denominator, Distribution, TermKind};
 
@@ -149,6 +149,9 @@ pub struct Model {
     /// The separability check, where the scan is a table of in-plane angles.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub separability: Option<Separability>,
+    /// The bispectral matrix that makes the model complete, where one is attached.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub donaldson: Option<Attachment>,
 }
 
 impl Model {

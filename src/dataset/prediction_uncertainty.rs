@@ -23,6 +23,17 @@ pub struct ParameterCovariance {
     shared_relative: Option<Vec<f64>>,
 }
 
+/// One of the predictions in a weighted sum.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Look {
+    /// How often it counts.
+    pub weight: f64,
+    /// Where from and where to.
+    pub geometry: Geometry,
+    /// Relative to what.
+    pub reference: Reference,
+}
+
 /// The uncertainty of a prediction.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PredictionUncertainty {
@@ -85,14 +96,30 @@ impl ParameterCovariance {
         reference: &Reference,
         counts: impl Fn(TermKind) -> bool,
     ) -> Result<PredictionUncertainty, Undefined> {
+        self.of_sum(terms, &[Look { weight: 1.0, geometry: *geometry, reference: *reference }], counts)
+    }
+
+    /// The uncertainty of a weighted sum of predictions of the same terms.
+    ///
+    /// # Errors
+    /// [`Undefined`] where a term has no value.
+    pub fn of_sum(
+        &self,
+        terms: &[Term],
+        looks: &[Look],
+        counts: impl Fn(TermKind) -> bool,
+    ) -> Result<PredictionUncertainty, Undefined> {
         let mut gradient = vec![0.0; self.names.len()];
         let (mut sum, mut shared) = (0.0, 0.0);
         for (position, term) in terms.iter().enumerate().filter(|(_, term)| counts(term.kind())) {
-            let evaluation = term.evaluate(geometry, reference)?;
-            sum += evaluation.value;
-            shared += evaluation.value * self.shared_relative.as_ref().map_or(0.0, |shared| shared[position]);
-            for (row, by) in self.place[position].iter().zip(evaluation.by).take(term.kind().parameters().len()) {
-                gradient[*row] = by;
+            for look in looks {
+                let evaluation = term.evaluate(&look.geometry, &look.reference)?;
+                let value = look.weight * evaluation.value;
+                sum += value;
+                shared += value * self.shared_relative.as_ref().map_or(0.0, |shared| shared[position]);
+                for (row, by) in self.place[position].iter().zip(evaluation.by).take(term.kind().parameters().len()) {
+                    gradient[*row] += look.weight * by;
+                }
             }
         }
         let needed: Vec<usize> = (0..gradient.len()).filter(|row| gradient[*row] != 0.0).collect();

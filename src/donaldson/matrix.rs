@@ -61,6 +61,18 @@ pub enum NoMatrix {
         /// Their excitation.
         nm: f64,
     },
+    /// An emission axis that is none.
+    #[error(
+        "measurement `{measurement}`: emission {nm} nm at index {index}; expected positive wavelengths that ascend"
+    )]
+    Axis {
+        /// The measurement.
+        measurement: String,
+        /// Where on the axis.
+        index: usize,
+        /// The wavelength there, nm.
+        nm: f64,
+    },
     /// Too small for what was asked.
     #[error("measurement `{measurement}`: {rows} excitations x {columns} emissions; expected 3 x 3 or more")]
     Small {
@@ -103,6 +115,14 @@ impl Matrix {
         if count < 3 || columns < 3 || measurement.check_shape().is_err() {
             return Err(NoMatrix::Small { measurement: name(), rows: count, columns });
         }
+        let emission_nm = if axis.actual_nm.len() == columns { axis.actual_nm.clone() } else { axis.nm.clone() };
+        let is_wrong = |k: &usize| {
+            let nm = emission_nm[*k];
+            !(nm.is_finite() && nm > 0.0 && (*k == 0 || nm > emission_nm[*k - 1]))
+        };
+        if let Some(index) = (0..columns).find(is_wrong) {
+            return Err(NoMatrix::Axis { measurement: name(), index, nm: emission_nm[index] });
+        }
         let excluded = Flag::ALL.iter().filter(|flag| flag.excludes_from_fit()).fold(0, |mask, flag| mask | flag.bit());
         let value = |at: (usize, usize)| {
             if measurement.flags[at] & excluded == 0 { measurement.values[at] } else { f64::NAN }
@@ -120,7 +140,7 @@ impl Matrix {
         let excitation_fwhm_nm: Option<Vec<f64>> = states.iter().map(|state| state.1).collect();
         Ok(Self {
             excitation_nm: states.iter().map(|state| state.0).collect(),
-            emission_nm: if axis.actual_nm.len() == columns { axis.actual_nm.clone() } else { axis.nm.clone() },
+            emission_nm,
             values,
             sigma,
             excitation_fwhm_nm: excitation_fwhm_nm.filter(is_width),

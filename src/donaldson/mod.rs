@@ -1,7 +1,7 @@
 //! Bispectral matrices: read as arrays, separated into their elastic and luminescent part, factorised, estimated from
 //! broadband spectra, and applied to lights.
 //!
-//! *May use:* `dataset`, `quantity`.
+//! *May use:* `dataset`, `terms`, `quantity`.
 //!
 //! *Invariant:* negative noise stays until a step that says so; what a matrix cannot tell is NaN or named, never filled in
 //! silence; a light is never cut where the matrix is excited.
@@ -9,6 +9,8 @@
 mod apply;
 mod balance;
 mod colour;
+mod complete;
+mod consistency;
 mod daylight;
 pub mod estimate;
 mod factors;
@@ -22,10 +24,15 @@ mod predict;
 mod reradiation;
 mod separate;
 mod store;
+mod stored_light;
 mod unlit;
 
 pub use balance::{Balance, Share};
 pub use colour::{Colour, Difference, Observer, Whiteness};
+pub use complete::{
+    Bispectral, Complete, Lit, NoComplete, NotAttached, OutsideExcitation, Radiated, Reflected, attach,
+};
+pub use consistency::{Consistency, Deviation, Level, ScanOf, Shape};
 pub use factors::Factors;
 pub use light::{Extend, Light, NoLight};
 pub use matrix::{Matrix, NoMatrix, steps};
@@ -33,5 +40,5 @@ pub use overlap::{Floor, Overlap};
 pub use predict::{Prediction, Visible};
 pub use reradiation::{Luminescence, NotAligned, Reradiation};
 pub use separate::{NotSeparated, Separate, Separated, separate};
-pub use store::{Parts, parts};
+pub use store::{IdTaken, Parts, parts};
 pub use unlit::Unlit;

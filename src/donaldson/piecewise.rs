@@ -87,6 +87,20 @@ pub(super) fn tents(nm: &[f64]) -> Vec<Line> {
     (0..nm.len()).map(|k| Line::triangle(nm[k.saturating_sub(1)], nm[k], nm[(k + 1).min(last)])).collect()
 }
 
+/// Where a wavelength lies on an ascending axis: the point below and above, and the part of the way; `None` outside.
+pub(super) fn place(axis: &[f64], nm: f64) -> Option<(usize, usize, f64)> {
+    let last = axis.len().checked_sub(1)?;
+    if !(axis[0]..=axis[last]).contains(&nm) {
+        return None;
+    }
+    let after = axis.partition_point(|point| *point < nm).min(last);
+    if axis[after] == nm {
+        return Some((after, after, 0.0));
+    }
+    let before = after.saturating_sub(1);
+    Some((before, after, (nm - axis[before]) / (axis[after] - axis[before])))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -4,8 +4,9 @@ use ndarray::Array2;
 
 use super::factors::Factors;
 use super::piecewise::Line;
-use super::{Matrix, Separated, steps};
-use crate::quantity::named;
+use super::{Matrix, NoMatrix, Separated, steps};
+use crate::dataset::Attached;
+use crate::quantity::{Flag, named};
 
 named! {
     /// Which luminescence of a separated matrix is applied.
@@ -99,17 +100,8 @@ impl Reradiation {
         let common = match luminescence {
             Luminescence::Factors => Common::Factors { factors: Box::new(factors.clone()), width_nm },
             _ => {
-                let (first, last) = (matrix.excitation_nm[0], matrix.excitation_nm[shape.0 - 1]);
-                let times = |(i, j): (usize, usize)| {
-                    // At the end of the axis a cell stands for its twin on the other side as well.
-                    let twin = 2.0 * matrix.emission_nm[j] - matrix.excitation_nm[i];
-                    match separated.overlap.holds(matrix, i, j) && matrix.values[(i, j)].is_finite() {
-                        true if twin < first || twin > last => 2.0,
-                        true => 1.0,
-                        false => 0.0,
-                    }
-                };
-                Common::Subtracted { times: Array2::from_shape_fn(shape, times), width_nm }
+                let times = subtracted(matrix, |(i, j)| separated.overlap.holds(matrix, i, j));
+                Common::Subtracted { times, width_nm }
             }
         };
         let mut findings = Vec::new();
@@ -130,6 +122,76 @@ impl Reradiation {
             findings,
             common,
         }
+    }
+
+    /// The two parts of a matrix as a document has them: the luminescence that was measured, the factors where it has no value.
+    ///
+    /// # Errors
+    /// [`NoMatrix`].
+    pub fn of_stored(parts: &Attached<'_>) -> Result<Self, NoMatrix> {
+        let matrix = Matrix::of(parts.matrix)?;
+        let (shape, width_nm) = (matrix.values.dim(), matrix.emission_width_nm());
+        let (luminescent, factors) = (parts.luminescent, parts.factorisation);
+        let measured = |(i, j): (usize, usize)| {
+            let at = (matrix.rows[i], j);
+            // What the separation estimated next to the diagonal counts; what nobody measured does not.
+            let is_usable = luminescent
+                .flags_at(at.0, at.1)
+                .iter()
+                .all(|flag| flag == Flag::Interpolated || !flag.excludes_from_fit());
+            let sigma = luminescent.uncertainty.standard.as_ref().map_or(f64::NAN, |sigma| sigma[at]);
+            (is_usable && luminescent.values[at].is_finite()).then(|| (luminescent.values[at], sigma))
+        };
+        let by_factors = |(i, j): (usize, usize)| {
+            let (mut variance, mut sum) = (0.0, factors.luminescent(i, j).unwrap_or(f64::NAN));
+            for k in 0..factors.rank() {
+                let (x, m) = (factors.excitation[(k, i)], factors.emission_factor[(k, j)]);
+                variance +=
+                    (m * factors.excitation_u[(k, i)]).powi(2) + (x * factors.emission_factor_u[(k, j)]).powi(2);
+            }
+            if matrix.emission_nm[j] < matrix.excitation_nm[i] {
+                (sum, variance) = (0.0, 0.0);
+            }
+            (sum, variance.sqrt())
+        };
+        let cells = Array2::from_shape_fn(shape, |at| measured(at).unwrap_or_else(|| by_factors(at)));
+        let over_width =
+            |part: fn(&(f64, f64)) -> f64| Array2::from_shape_fn(shape, |(i, j)| part(&cells[(i, j)]) / width_nm[j]);
+        let is_estimated = |(i, j): (usize, usize)| {
+            let flags = luminescent.flags_at(matrix.rows[i], j);
+            flags.iter().any(|flag| flag == Flag::Interpolated)
+        };
+        let missing = Array2::from_shape_fn(shape, |at| usize::from(measured(at).is_none())).sum();
+        let elastic: Vec<f64> = parts.elastic.values.row(0).to_vec();
+        let sigma = |j: usize| parts.elastic.uncertainty.standard.as_ref().map_or(f64::NAN, |sigma| sigma[(0, j)]);
+        let elastic_sigma = (0..shape.1).map(sigma).collect();
+        let mut findings: Vec<String> = (missing > 0)
+            .then(|| format!("{missing} luminescent cells have no value; the factors stand in for them"))
+            .into_iter()
+            .collect();
+        findings.extend(without_elastic(&matrix.emission_nm, &elastic));
+        Ok(Self {
+            density: over_width(|cell| cell.0),
+            density_sigma: over_width(|cell| cell.1),
+            common: Common::Subtracted { times: subtracted(&matrix, is_estimated), width_nm },
+            excitation_nm: matrix.excitation_nm,
+            emission_nm: matrix.emission_nm,
+            elastic,
+            elastic_sigma,
+            emission_fwhm_nm: matrix.emission_fwhm_nm,
+            findings,
+        })
+    }
+
+    /// The same surface with all its values times a number.
+    #[must_use]
+    pub(super) fn scaled(mut self, factor: f64) -> Self {
+        for list in [&mut self.elastic, &mut self.elastic_sigma] {
+            list.iter_mut().for_each(|value| *value *= factor);
+        }
+        self.density *= factor;
+        self.density_sigma *= factor;
+        self
     }
 
     /// A surface from its parts, without uncertainty: the elastic radiance factor, and the luminescent density
@@ -199,6 +261,21 @@ impl Reradiation {
         }
         sum.max(0.0)
     }
+}
+
+/// How often the luminescence of each cell was subtracted to get the elastic part, where reflected light reaches.
+fn subtracted(matrix: &Matrix, is_inside: impl Fn((usize, usize)) -> bool) -> Array2<f64> {
+    let shape = matrix.values.dim();
+    let (first, last) = (matrix.excitation_nm[0], matrix.excitation_nm[shape.0 - 1]);
+    Array2::from_shape_fn(shape, |(i, j)| {
+        // At the end of the axis a cell stands for its twin on the other side as well.
+        let twin = 2.0 * matrix.emission_nm[j] - matrix.excitation_nm[i];
+        match is_inside((i, j)) && matrix.values[(i, j)].is_finite() {
+            true if twin < first || twin > last => 2.0,
+            true => 1.0,
+            false => 0.0,
+        }
+    })
 }
 
 fn without_elastic(emission_nm: &[f64], elastic: &[f64]) -> Option<String> {

@@ -3,7 +3,7 @@
 use ndarray::{Array2, Axis, s};
 
 use super::{Matrix, Separated};
-use crate::dataset::{Acquisition, Factorisation, Id, Measurement};
+use crate::dataset::{Acquisition, Document, Factorisation, Id, Measurement, Step, is_same_part};
 use crate::quantity::{
     Basis, EmissionAxis, Flag, NormalisedAt, Part, Quantity, QuantityKind, Uncertainty, WavelengthAxis,
 };
@@ -18,6 +18,50 @@ pub struct Parts {
     pub luminescent: Measurement,
     /// Its factors, under `ID-factors`.
     pub factorisation: Factorisation,
+}
+
+/// A part has the id already.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("there is a {what} `{id}` already")]
+pub struct IdTaken {
+    what: &'static str,
+    id: Id,
+}
+
+impl Parts {
+    /// True where a document has all these parts as they are.
+    #[must_use]
+    pub fn are_in(&self, document: &Document) -> bool {
+        let is_there =
+            |part: &Measurement| document.measurement(part.id.as_str()).is_some_and(|there| is_same_part(there, part));
+        let factors = document.factorisation(self.factorisation.id.as_str());
+        is_there(&self.elastic)
+            && is_there(&self.luminescent)
+            && factors.is_some_and(|there| is_same_part(there, &self.factorisation))
+    }
+
+    /// Puts the parts into their document, with the step that made them.
+    ///
+    /// # Errors
+    /// [`IdTaken`].
+    pub fn store(self, document: &mut Document) -> Result<(), IdTaken> {
+        let Self { elastic, luminescent, factorisation } = self;
+        for id in [&elastic.id, &luminescent.id] {
+            if document.measurement(id.as_str()).is_some() {
+                return Err(IdTaken { what: "measurement", id: id.clone() });
+            }
+        }
+        if document.factorisation(factorisation.id.as_str()).is_some() {
+            return Err(IdTaken { what: "factorisation", id: factorisation.id });
+        }
+        document.provenance.steps.push(Step::by_this_program(format!(
+            "`{}` separated into `{}` and `{}`, with the factors `{}` (reflected light within {} nm of the excitation)",
+            factorisation.measurement, elastic.id, luminescent.id, factorisation.id, factorisation.reach_nm
+        )));
+        document.measurements.extend([elastic, luminescent]);
+        document.factorisations.push(factorisation);
+        Ok(())
+    }
 }
 
 /// The separation of a measurement as parts of its document; `data_digest` is the digest of the measurement. `None` where it

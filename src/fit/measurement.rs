@@ -61,6 +61,7 @@ pub fn fit_measurement(
         method: fits.method(options),
         identifiability,
         separability,
+        donaldson: None,
     };
     model.residuals = residuals(&model, &data, model.fitted_parameters())?.1;
     Ok(model)

@@ -323,6 +323,9 @@ rules! {
     "BB0812" "model.albedo" Warning albedo::of_models,
         "Terms without a norm can send back more light than falls in, mostly at flat incidence.",
         "an intensity of 30 at a roughness of 0.3", "Fit again with a normalised distribution; do not let light bounce between such surfaces.";
+    "BB0813" "model.donaldson" Error model::donaldson,
+        "A model is completed with the two parts of one matrix, on its axes.",
+        "the luminescent part of another matrix", "Attach the matrix again: fit --donaldson.";
 
     "BB0901" "calibration.date-form" Error calibration::date_form,
         "Days are compared with the times of the rows.",

@@ -423,7 +423,27 @@ fn separability() -> impl Strategy<Value = Separability> {
     })
 }
 
-fn model(id: Id, measurements: &[Id]) -> impl Strategy<Value = Model> + use<> {
+/// A matrix attached to a model, of whatever the document has.
+fn attachment(measurements: &[Id], factorisations: &[Id]) -> BoxedStrategy<Option<Attachment>> {
+    if factorisations.is_empty() {
+        return Just(None).boxed();
+    }
+    let ids = (select(factorisations.to_vec()), select(measurements.to_vec()), select(measurements.to_vec()));
+    let attachment = (ids, text(), text(), select(ReflectanceSource::ALL), vec(text(), 0..3)).prop_map(
+        |(ids, elastic_digest, luminescent_digest, reflectance, consistency)| Attachment {
+            factorisation: ids.0,
+            elastic: ids.1,
+            elastic_digest,
+            luminescent: ids.2,
+            luminescent_digest,
+            reflectance,
+            consistency,
+        },
+    );
+    of(attachment).boxed()
+}
+
+fn model(id: Id, measurements: &[Id], factorisations: &[Id]) -> impl Strategy<Value = Model> + use<> {
     let head = (of(text()), select(measurements.to_vec()), text(), text(), reference(), text(), emission());
     let middle = (
         vec(term(), 0..3),
@@ -434,7 +454,15 @@ fn model(id: Id, measurements: &[Id]) -> impl Strategy<Value = Model> + use<> {
         }),
         (number(), number(), any::<u64>(), any::<u64>()),
     );
-    let tail = (any::<bool>(), text(), vec(text(), 0..3), of(separability()), of(text()), vec(parameter(), 0..3));
+    let tail = (
+        any::<bool>(),
+        text(),
+        vec(text(), 0..3),
+        of(separability()),
+        of(text()),
+        vec(parameter(), 0..3),
+        attachment(measurements, factorisations),
+    );
     (head, middle, tail).prop_map(move |(head, middle, tail)| Model {
         id: id.clone(),
         title: head.0,
@@ -459,6 +487,7 @@ fn model(id: Id, measurements: &[Id]) -> impl Strategy<Value = Model> + use<> {
         method: tail.1,
         identifiability: tail.2,
         separability: tail.3,
+        donaldson: tail.6,
     })
 }
 
@@ -542,7 +571,7 @@ pub fn document() -> impl Strategy<Value = Document> {
             parts(&names.lights, light),
             parts(&names.references, white_reference),
             parts(&names.measurements, |id| measurement(id, &names)),
-            parts(&names.models, |id| model(id, &names.measurements)),
+            parts(&names.models, |id| model(id, &names.measurements, &names.factorisations)),
             parts(&names.factorisations, |id| factorisation(id, &names.measurements)),
         );
         (head, parts, extensions)

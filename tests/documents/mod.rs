@@ -200,6 +200,7 @@ pub fn model(data_digest: String) -> Model {
             constancy_relative_rms: 0.02,
             rank_one_relative_rms: 0.03,
         }),
+        donaldson: None,
     }
 }
 

@@ -173,6 +173,7 @@ pub(crate) fn model() -> Model {
         method: "variable projection; every start of the grid led to this minimum".to_owned(),
         identifiability: vec!["intensity and refractive_index are correlated (-0.98)".to_owned()],
         separability: Some(separability()),
+        donaldson: None,
     }
 }
 

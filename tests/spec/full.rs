@@ -233,8 +233,12 @@ pub fn minimal() -> Document {
         }),
         ..least.clone()
     };
-    let model =
-        Model { measurement: id("least"), emission: EmissionAxis::Band { band: None }, ..clean().models[0].clone() };
+    let model = Model {
+        measurement: id("least"),
+        emission: EmissionAxis::Band { band: None },
+        donaldson: None,
+        ..clean().models[0].clone()
+    };
     let chain = || vec![Calibration::default()];
     let spectrum = LightSpectrum { quantity, axis, values: vec![0.0; 2], flags: vec![0; 2] };
     let other = || id("other");

@@ -1,5 +1,6 @@
 //! `bbrf eval`: forward values of a model over a list of geometries.
 
+mod complete;
 mod uncertainty;
 
 use std::path::PathBuf;
@@ -12,9 +13,17 @@ use crate::cli::exit::{CommandResult, Outcome};
 use crate::cli::model_source::{Loaded, ValueMeaning, load};
 use crate::cli::output::{print_json, print_message, print_text};
 use crate::dataset::predict;
+use crate::donaldson::Extend;
 use crate::import::{GeometryRow, read_geometries};
 use crate::quantity::Reference;
 use crate::terms::{Factors, Term, TermKind, TorranceSparrow};
+
+const EXAMPLES: &str = "\
+Examples:
+  bbrf eval --model fitted.bbrf --geometry g.csv --uncertainty
+  bbrf eval --model whole.bbrf#scan-auto --geometry g.csv --light D65
+  bbrf eval --model whole.bbrf --geometry g.csv --light lamp.csv --json
+  bbrf eval --model whole.bbrf --geometry g.csv --excitation 375 --excitation 450";
 
 /// Evaluate a model: Y/E of its elastic terms, one row per geometry
 ///
@@ -25,7 +34,12 @@ use crate::terms::{Factors, Term, TermKind, TorranceSparrow};
 /// geometry, cos(theta_ref) in a fixed one. A model of a band gives the value of that band; one of many wavelengths gives
 /// a row for each that has a model (`emission_nm`), and those without are named on standard error. Luminescent terms have
 /// a column of their own.
+///
+/// A complete model (`bbrf fit --donaldson`) also says what a surface radiates at every emission: with `--light` pi times the
+/// radiance Y = luminescent + diffuse + specular under that light across the beam, with `--excitation` the luminescence as a
+/// density (nm-1) and reflection as a line (a radiance factor), each with its standard uncertainty.
 #[derive(Debug, clap::Args)]
+#[command(after_help = EXAMPLES)]
 pub(crate) struct Arguments {
     /// The model: FILE.bbrf#ID (FILE.bbrf where it holds one model), or a JSON file {"terms": [...]}
     #[arg(long)]
@@ -45,6 +59,16 @@ pub(crate) struct Arguments {
     /// standard error.
     #[arg(long)]
     uncertainty: bool,
+    /// Of a complete model: pi times the radiance under this light, D65, A, FL11, ... of the CIE, a text of two columns (nm, value),
+    /// or FILE.bbrf#ID
+    #[arg(long, conflicts_with_all = ["factors", "uncertainty", "excitation"], value_name = "LIGHT")]
+    light: Option<String>,
+    /// Of a complete model: what light of this wavelength becomes, nm; repeat for several
+    #[arg(long, conflicts_with_all = ["factors", "uncertainty"], value_name = "NM")]
+    excitation: Vec<f64>,
+    /// What the light does where it has no value: zero, or flat: it goes on at its first and last
+    #[arg(long, default_value = "zero", requires = "light")]
+    extend: Extend,
     /// Print JSON instead of CSV
     #[arg(long)]
     json: bool,
@@ -93,7 +117,12 @@ struct EvalRow {
     signed: Option<(f64, f64)>,
 }
 
+pub(crate) use complete::EvalCompleteResult;
+
 pub(crate) fn run(arguments: &Arguments) -> CommandResult {
+    if arguments.light.is_some() || !arguments.excitation.is_empty() {
+        return complete::run(arguments);
+    }
     let Loaded { bands, value, covariance, .. } = load(&arguments.model)?;
     let specular = match (arguments.factors, bands.first()) {
         (true, Some((_, terms))) => Some(only_specular(terms)?),

@@ -1,6 +1,7 @@
 //! `bbrf fit`: fits the terms to a measurement of each file.
 
 mod compare;
+mod complete;
 mod diagnose;
 mod outputs;
 mod settings;
@@ -71,6 +72,13 @@ pub(crate) struct Arguments {
     /// Reference to assume where the file states none: same-geometry, fixed-geometry(THETA_I,THETA_V), none
     #[arg(long)]
     reference: Option<Reference>,
+    /// Complete the model with a bispectral matrix, FILE.bbrf#ID (FILE.bbrf where it holds one): Y = Y_l + Y_d + Y_s
+    ///
+    /// The matrix is separated as `bbrf donaldson separate` does, scan and matrix are held against each other (a disagreement is a
+    /// warning), and with `-o` the matrix, its parts and what it refers to stand in OUT beside scan and model, so that
+    /// `bbrf eval --model OUT#MODEL --light LIGHT` needs nothing else.
+    #[arg(long, value_name = "FILE#ID", conflicts_with = "compare")]
+    donaldson: Option<String>,
     /// Fit every form of the terms instead, and compare them by cross-validation, AICc and BIC; writes nothing
     #[arg(long, conflicts_with_all = ["output", "terms", "distribution", "denominator", "diagnose"])]
     compare: bool,
@@ -121,6 +129,9 @@ struct FittedModel {
     separability: Option<SeparabilityResult>,
     /// How the fit was done and why it stopped.
     method: String,
+    /// With `--donaldson`: the matrix that completes the model, and whether it goes with the scan.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    donaldson: Option<complete::CompletionResult>,
     /// Time of the fit alone, seconds.
     seconds: f64,
 }
@@ -195,13 +206,15 @@ pub(crate) fn run(arguments: &Arguments) -> CommandResult {
         diagnose::check(page, &arguments.files, arguments.output.as_deref())?;
     }
     let outputs = outputs::outputs(&arguments.files, arguments.output.as_deref())?;
+    let matrix = arguments.donaldson.as_deref().map(|name| complete::Source::open(name, &arguments.files, &outputs));
+    let matrix = matrix.transpose()?;
     let progress = progress::bar(arguments.files.len() as u64, "fitting");
     let results: Vec<Result<FittedModel, miette::Report>> = arguments
         .files
         .par_iter()
         .zip(&outputs)
         .map(|(file, output)| {
-            let result = fit_file(arguments, file, output.as_deref());
+            let result = fit_file(arguments, file, output.as_deref(), matrix.as_ref());
             progress.inc(1);
             result
         })
@@ -231,7 +244,12 @@ pub(crate) fn run(arguments: &Arguments) -> CommandResult {
     }
 }
 
-fn fit_file(arguments: &Arguments, file: &Path, output: Option<&Path>) -> Result<FittedModel, miette::Report> {
+fn fit_file(
+    arguments: &Arguments,
+    file: &Path,
+    output: Option<&Path>,
+    matrix: Option<&complete::Source>,
+) -> Result<FittedModel, miette::Report> {
     let Opened { mut document, foreign, .. } = open_to_rewrite(file)?;
     let measurement = choose(&document, arguments.measurement.as_deref(), file)?;
     let options = FitOptions {
@@ -251,12 +269,15 @@ fn fit_file(arguments: &Arguments, file: &Path, output: Option<&Path>) -> Result
             .map_err(|error| miette!("{}: {error}", file.display()))?,
     };
     let start = Instant::now();
-    let model = fit_measurement(&document, measurement, &options)
+    let mut model = fit_measurement(&document, measurement, &options)
         .map_err(|error| miette!("{}: {error}{}", file.display(), hint(&error)))?;
     let seconds = start.elapsed().as_secs_f64();
-    let result = fitted_model(file, &model, seconds);
+    let mut result = fitted_model(file, &model, seconds);
     if let Some(page) = &arguments.diagnose {
         diagnose::write(page, &document, &model, &options)?;
+    }
+    if let Some(matrix) = matrix {
+        result.donaldson = Some(matrix.complete(file, &mut document, &mut model)?);
     }
     if let Some(output) = output {
         store(&mut document, model);
@@ -378,6 +399,7 @@ fn fitted_model(file: &Path, model: &Model, seconds: f64) -> FittedModel {
             rank_one_relative_rms: s.rank_one_relative_rms,
         }),
         method: model.method.clone(),
+        donaldson: None,
         seconds,
     }
 }

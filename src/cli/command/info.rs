@@ -79,6 +79,9 @@ struct ModelInfo {
     terms: Vec<String>,
     converged: bool,
     residual_rms: f64,
+    /// The factors of the matrix that makes it complete.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    complete_with: Option<String>,
 }
 
 /// One factorisation in short.
@@ -222,13 +225,16 @@ impl ModelInfo {
             terms: model.terms.iter().map(|term| term.kind.to_string()).collect(),
             converged: model.converged,
             residual_rms: model.residuals.rms,
+            complete_with: model.donaldson.as_ref().map(|attachment| attachment.factorisation.to_string()),
         }
     }
 
     fn text(&self) -> String {
         let state = if self.converged { "converged" } else { "NOT CONVERGED" };
+        let complete = self.complete_with.as_ref();
+        let complete = complete.map_or(String::new(), |factors| format!(", complete with the matrix of {factors}"));
         format!(
-            "  model {}: {} of {} ({}), {state}, residual r.m.s. {}",
+            "  model {}: {} of {} ({}), {state}, residual r.m.s. {}{complete}",
             self.id,
             self.terms.join(" + "),
             self.measurement,

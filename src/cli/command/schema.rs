@@ -28,6 +28,7 @@ pub(crate) fn all() -> Vec<(&'static str, Schema)> {
         ("document", schema_for!(Document)),
         ("donaldson-predict", schema_for!(super::donaldson::predict::PredictResult)),
         ("eval", schema_for!(super::eval::EvalResult)),
+        ("eval-complete", schema_for!(super::eval::EvalCompleteResult)),
         ("eval-model", schema_for!(crate::cli::model_source::ModelJson)),
         ("fit", schema_for!(super::fit::FitResult)),
         ("fit-compare", schema_for!(super::fit::CompareResult)),

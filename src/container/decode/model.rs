@@ -6,7 +6,7 @@ use super::super::error::ReadError;
 use super::super::layout::name;
 use super::parts::emission_axis;
 use super::{At, dataset_text, numbers};
-use crate::dataset::{FittedParameter, FittedTerm, Id, Model, Residuals, Separability};
+use crate::dataset::{Attachment, FittedParameter, FittedTerm, Id, Model, Residuals, Separability};
 
 pub(super) fn model(id: Id, at: &At<'_>) -> Result<Model, ReadError> {
     let identifiability = at.group.dataset(name::IDENTIFIABILITY).map(|_| at.texts(name::IDENTIFIABILITY));
@@ -34,6 +34,20 @@ pub(super) fn model(id: Id, at: &At<'_>) -> Result<Model, ReadError> {
         method: at.text(name::METHOD)?,
         identifiability: identifiability.transpose()?.unwrap_or_default(),
         separability: at.child(name::SEPARABILITY).map(|at| separability(&at)).transpose()?,
+        donaldson: at.child(name::DONALDSON).map(|at| attachment(&at)).transpose()?,
+    })
+}
+
+fn attachment(at: &At<'_>) -> Result<Attachment, ReadError> {
+    let consistency = at.group.dataset(name::CONSISTENCY).map(|_| at.texts(name::CONSISTENCY));
+    Ok(Attachment {
+        factorisation: at.parsed(name::FACTORISATION)?,
+        elastic: at.parsed(name::ELASTIC)?,
+        elastic_digest: at.text(name::ELASTIC_DIGEST)?,
+        luminescent: at.parsed(name::LUMINESCENT)?,
+        luminescent_digest: at.text(name::LUMINESCENT_DIGEST)?,
+        reflectance: at.parsed(name::REFLECTANCE)?,
+        consistency: consistency.transpose()?.unwrap_or_default(),
     })
 }
 

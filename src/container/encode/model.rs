@@ -5,7 +5,7 @@ use super::super::layout::name;
 use super::super::tree::{Array, Data, Dataset, Group};
 use super::faithful;
 use super::parts::emission_axis;
-use crate::dataset::{FittedParameter, FittedTerm, Model, Separability};
+use crate::dataset::{Attachment, FittedParameter, FittedTerm, Model, Separability};
 
 pub(super) fn model(model: &Model) -> Result<Group, EncodeError> {
     let mut group = Group::default();
@@ -35,6 +35,23 @@ pub(super) fn model(model: &Model) -> Result<Group, EncodeError> {
     }
     if let Some(check) = &model.separability {
         group.groups.push((name::SEPARABILITY.to_owned(), separability(check, &model.unit)?));
+    }
+    if let Some(attached) = &model.donaldson {
+        group.groups.push((name::DONALDSON.to_owned(), attachment(attached)?));
+    }
+    Ok(group)
+}
+
+fn attachment(attachment: &Attachment) -> Result<Group, EncodeError> {
+    let mut group = Group::default();
+    group.text(name::FACTORISATION, attachment.factorisation.as_str())?;
+    group.text(name::ELASTIC, attachment.elastic.as_str())?;
+    group.text(name::ELASTIC_DIGEST, &attachment.elastic_digest)?;
+    group.text(name::LUMINESCENT, attachment.luminescent.as_str())?;
+    group.text(name::LUMINESCENT_DIGEST, &attachment.luminescent_digest)?;
+    group.text(name::REFLECTANCE, attachment.reflectance.name())?;
+    if !attachment.consistency.is_empty() {
+        group.texts(name::CONSISTENCY, attachment.consistency.iter().map(String::as_str), "")?;
     }
     Ok(group)
 }

@@ -6,7 +6,7 @@ use super::super::Context;
 use super::super::finding::Finder;
 use crate::container::layout::name;
 use crate::container::measurement_digest;
-use crate::dataset::{FittedParameter, FittedTerm, Mask, Model, Place, Reduction, reduce};
+use crate::dataset::{FittedParameter, FittedTerm, Mask, Model, NotComplete, Place, Reduction, reduce};
 
 fn models<'a>(context: &Context<'a>) -> impl Iterator<Item = (String, &'a Model)> {
     let models = context.document().map_or(&[][..], |document| &document.models);
@@ -19,6 +19,27 @@ pub(in super::super) fn data_changed(context: &Context<'_>, found: &mut Finder) 
         let Some(now) = measurement.and_then(|measurement| measurement_digest(measurement).ok()) else { continue };
         if now != model.data_digest {
             found.add(Place::path(format!("{path}@{}", name::DATA_DIGEST)), now, model.data_digest.as_str());
+        }
+    }
+    for (path, model) in models(context) {
+        let Some(attached) = context.document().and_then(|document| document.attached(model).ok()) else { continue };
+        for (attribute, part, then) in [
+            (name::ELASTIC_DIGEST, attached.elastic, &attached.attachment.elastic_digest),
+            (name::LUMINESCENT_DIGEST, attached.luminescent, &attached.attachment.luminescent_digest),
+        ] {
+            let now = measurement_digest(part).unwrap_or_default();
+            if now != *then {
+                found.add(Place::path(format!("{path}/{}@{attribute}", name::DONALDSON)), now, then.as_str());
+            }
+        }
+    }
+}
+
+pub(in super::super) fn donaldson(context: &Context<'_>, found: &mut Finder) {
+    for (path, model) in models(context) {
+        let attached = context.document().map(|document| document.attached(model));
+        if let Some(Err(NotComplete::Unfit { attribute, found: there, expected, .. })) = attached {
+            found.add(Place::path(format!("{path}/{}@{attribute}", name::DONALDSON)), there, expected);
         }
     }
 }

@@ -9,16 +9,16 @@ use crate::cli::opened::open;
 use crate::dataset::{Document, Measurement, Role};
 use crate::donaldson::Light;
 use crate::import::{Options, import};
-use crate::quantity::{Bandpass, EmissionAxis, Flag, QuantityKind, WavelengthAxis};
+use crate::quantity::{EmissionAxis, Flag, QuantityKind, WavelengthAxis};
 
 /// A light, with remarks on how it was read.
-pub(super) struct Loaded {
-    pub(super) light: Light,
-    pub(super) remarks: Vec<String>,
+pub(in crate::cli::command) struct Loaded {
+    pub(in crate::cli::command) light: Light,
+    pub(in crate::cli::command) remarks: Vec<String>,
 }
 
 /// Reads a light.
-pub(super) fn load(name: &str) -> Result<Loaded, miette::Report> {
+pub(in crate::cli::command) fn load(name: &str) -> Result<Loaded, miette::Report> {
     if let Some(light) = Light::named(name) {
         return Ok(Loaded { light, remarks: Vec::new() });
     }
@@ -111,32 +111,8 @@ fn finish(
     values: Vec<(f64, u16)>,
     mut remarks: Vec<String>,
 ) -> Result<Loaded, miette::Report> {
-    let all = if axis.actual_nm.len() == axis.nm.len() { &axis.actual_nm } else { &axis.nm };
-    let is_usable = |(value, flags): &(f64, u16)| value.is_finite() && flags & excluded() == 0;
-    let usable: Vec<usize> = (0..values.len().min(all.len())).filter(|k| is_usable(&values[*k])).collect();
-    let left_out = all.len() - usable.len();
-    if left_out > 0 {
-        remarks.push(format!(
-            "{name}: {left_out} of {} wavelengths have no usable value; it goes straight past them",
-            all.len()
-        ));
-    }
-    let kind = if kind == QuantityKind::Unstated {
-        remarks.push(format!("{name}: does not say what its numbers are; taken as a relative spectrum"));
-        QuantityKind::RelativeSpectrum
-    } else {
-        kind
-    };
-    let fwhm = match &axis.bandpass {
-        Bandpass::Stated { fwhm_nm, .. } if fwhm_nm.len() == 1 => Some(vec![fwhm_nm[0]; usable.len()]),
-        Bandpass::Stated { fwhm_nm, .. } if fwhm_nm.len() == all.len() => {
-            Some(usable.iter().map(|k| fwhm_nm[*k]).collect())
-        }
-        _ => None,
-    };
-    let of = |list: &[f64]| usable.iter().map(|k| list[*k]).collect::<Vec<f64>>();
-    let numbers: Vec<f64> = values.iter().map(|(value, _)| *value).collect();
-    let light =
-        Light::new(name, kind, of(all), of(&numbers), fwhm).map_err(|error| miette!("--light {name}: {error}"))?;
+    let (light, more) =
+        Light::of_values(name, kind, axis, &values).map_err(|error| miette!("--light {name}: {error}"))?;
+    remarks.extend(more);
     Ok(Loaded { light, remarks })
 }

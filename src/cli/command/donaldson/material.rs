@@ -7,7 +7,7 @@ use crate::dataset::{Document, Measurement};
 use crate::quantity::{Part, QuantityKind};
 
 /// The file and the id of `FILE#ID`.
-pub(super) fn split(name: &str) -> (&str, Option<&str>) {
+pub(in crate::cli::command) fn split(name: &str) -> (&str, Option<&str>) {
     match name.rsplit_once('#') {
         Some((path, id)) => (path, Some(id)),
         None => (name, None),
@@ -21,7 +21,12 @@ pub(super) fn load(name: &str) -> Result<Measurement, miette::Report> {
     pick(&document, path, id).cloned()
 }
 
-fn pick<'a>(document: &'a Document, path: &str, id: Option<&str>) -> Result<&'a Measurement, miette::Report> {
+/// The matrix of that id in a document, or its only one.
+pub(in crate::cli::command) fn pick<'a>(
+    document: &'a Document,
+    path: &str,
+    id: Option<&str>,
+) -> Result<&'a Measurement, miette::Report> {
     // The luminescent part that a separation leaves beside its matrix is none to choose.
     let is_matrix = |one: &&Measurement| {
         one.quantity.kind == QuantityKind::DonaldsonMatrix && one.quantity.part != Part::Luminescent

@@ -1,8 +1,8 @@
 //! `bbrf donaldson`: bispectral matrices, one file per step.
 
 pub(crate) mod estimate;
-mod light_source;
-mod material;
+pub(super) mod light_source;
+pub(super) mod material;
 pub(crate) mod predict;
 pub(crate) mod separate;
 mod spectrum_source;

@@ -11,8 +11,8 @@ use crate::cli::opened::{open, open_to_rewrite};
 use crate::cli::output::{print_json, print_text};
 use crate::cli::overwrite::refuse_overwriting;
 use crate::container::{self, measurement_digest};
-use crate::dataset::{Document, Measurement, Step};
-use crate::donaldson::{Balance, Matrix, Parts, Separate, Separated, Share, parts, separate};
+use crate::dataset::{Document, Measurement};
+use crate::donaldson::{Balance, Matrix, Separate, Separated, Share, parts, separate};
 use crate::quantity::QuantityKind;
 
 /// Tell the reflected from the luminescent light of a matrix, and factorise the luminescence
@@ -133,7 +133,7 @@ pub(crate) fn run(arguments: &Arguments) -> CommandResult {
         let digest = measurement_digest(measurement).map_err(|error| miette!("{path}: {error}"))?;
         let parts = parts(measurement, &matrix, &separated, &digest)
             .ok_or_else(|| miette!("{path}: measurement `{}` has no emission wavelengths", measurement.id))?;
-        add(&mut document, parts).map_err(|error| miette!("{path}: {error}"))?;
+        parts.store(&mut document).map_err(|error| miette!("{path}: {error}"))?;
         container::write_file_keeping(&document, &opened.foreign, output).map_err(|error| miette!("{error}"))?;
         result.file = Some(output.display().to_string());
     }
@@ -158,25 +158,6 @@ pub(super) fn chosen<'a>(document: &'a Document, id: Option<&str>) -> Result<&'a
         (None, []) => Err(miette!("holds no `donaldson-matrix`; import one, as from a .BFC file")),
         (None, _) => Err(miette!("holds several matrices ({}); name one as FILE#ID", ids())),
     }
-}
-
-fn add(document: &mut Document, parts: Parts) -> Result<(), miette::Report> {
-    let Parts { elastic, luminescent, factorisation } = parts;
-    for id in [&elastic.id, &luminescent.id] {
-        if document.measurement(id.as_str()).is_some() {
-            return Err(miette!("there is a measurement `{id}` already"));
-        }
-    }
-    if document.factorisation(factorisation.id.as_str()).is_some() {
-        return Err(miette!("there is a factorisation `{}` already", factorisation.id));
-    }
-    document.provenance.steps.push(Step::by_this_program(format!(
-        "`{}` separated into `{}` and `{}`, with the factors `{}` (reflected light within {} nm of the excitation)",
-        factorisation.measurement, elastic.id, luminescent.id, factorisation.id, factorisation.reach_nm
-    )));
-    document.measurements.extend([elastic, luminescent]);
-    document.factorisations.push(factorisation);
-    Ok(())
 }
 
 fn known(x: f64) -> Option<f64> {

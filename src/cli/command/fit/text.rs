@@ -42,6 +42,7 @@ pub(super) fn text(model: &FittedModel) -> String {
         ));
     }
     lines.extend(model.identifiability.iter().map(|finding| format!("  note: {finding}")));
+    lines.extend(model.donaldson.iter().flat_map(|completion| completion.lines()));
     if !model.converged {
         lines.push(format!("  NOT CONVERGED: {}", model.method));
     }
