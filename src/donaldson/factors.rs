@@ -70,6 +70,21 @@ impl Factors {
         complete(known, excitation, emission)
     }
 
+    /// Factors that were found before, \[k, excitation\] and \[k, emission\], with the covariance that the cells give them; `None` where
+    /// they do not fit the cells.
+    pub(super) fn given(known: &Known<'_>, excitation: &Array2<f64>, emission: &Array2<f64>) -> Option<Self> {
+        let ((k, rows), (other, columns)) = (excitation.dim(), emission.dim());
+        let is_number = |value: &f64| value.is_finite() && *value >= 0.0;
+        if k == 0 || k != other || (rows, columns) != known.values.dim() {
+            return None;
+        }
+        if !excitation.iter().chain(emission).all(is_number) {
+            return None;
+        }
+        let [x, m] = [excitation, emission].map(|side| DMatrix::from_fn(side.ncols(), k, |i, a| side[(a, i)]));
+        complete(known, x, m)
+    }
+
     /// The luminescence of a cell.
     #[must_use]
     pub fn value(&self, excitation: usize, emission: usize) -> f64 {

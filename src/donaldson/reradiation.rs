@@ -52,8 +52,19 @@ enum Common {
     Nothing,
     /// So many times the luminescence of each cell, over its emission's width in nm, was subtracted to get the elastic part.
     Subtracted { times: Array2<f64>, width_nm: Vec<f64> },
-    /// All luminescence is that of the factors, over these widths.
-    Factors { factors: Box<Factors>, width_nm: Vec<f64> },
+    /// All luminescence is that of the factors, and so many times that of each cell was subtracted to get the elastic part.
+    Factors(Box<OfFactors>),
+}
+
+/// What the elastic part and luminescence by factors share.
+#[derive(Debug, Clone, PartialEq)]
+struct OfFactors {
+    factors: Factors,
+    width_nm: Vec<f64>,
+    /// How often the luminescence of each cell was subtracted.
+    times: Array2<f64>,
+    /// Variance of each elastic value without that of the factors.
+    own: Vec<f64>,
 }
 
 /// Arrays that do not fit together.
@@ -96,21 +107,17 @@ impl Reradiation {
         let over_width =
             |part: fn(&(f64, f64)) -> f64| Array2::from_shape_fn(shape, |(i, j)| part(&cells[(i, j)]) / width_nm[j]);
         let (density, density_sigma) = (over_width(|cell| cell.0), over_width(|cell| cell.1));
+        let is_elastic = |j: usize| separated.elastic[j].is_finite();
+        let times =
+            Array2::from_shape_fn(
+                shape,
+                |(i, j)| {
+                    if is_elastic(j) { separated.overlap.times(matrix, i, j) } else { 0.0 }
+                },
+            );
         let common = match luminescence {
-            Luminescence::Factors => Common::Factors { factors: Box::new(factors.clone()), width_nm },
-            _ => {
-                let (first, last) = (matrix.excitation_nm[0], matrix.excitation_nm[shape.0 - 1]);
-                let times = |(i, j): (usize, usize)| {
-                    // At the end of the axis a cell stands for its twin on the other side as well.
-                    let twin = 2.0 * matrix.emission_nm[j] - matrix.excitation_nm[i];
-                    match separated.overlap.holds(matrix, i, j) && matrix.values[(i, j)].is_finite() {
-                        true if twin < first || twin > last => 2.0,
-                        true => 1.0,
-                        false => 0.0,
-                    }
-                };
-                Common::Subtracted { times: Array2::from_shape_fn(shape, times), width_nm }
-            }
+            Luminescence::Factors => Common::Factors(Box::new(OfFactors::new(matrix, separated, times, width_nm))),
+            _ => Common::Subtracted { times, width_nm },
         };
         let mut findings = Vec::new();
         let missing = (0..shape.0).flat_map(|i| (0..shape.1).map(move |j| (i, j)));
@@ -181,12 +188,11 @@ impl Reradiation {
     pub(super) fn variance(&self, elastic: &[f64], excitation: &[f64], emission: &[f64]) -> f64 {
         let known = |value: f64| if value.is_finite() { value } else { 0.0 };
         let of_elastic: f64 = elastic.iter().zip(&self.elastic_sigma).map(|(a, s)| (a * known(*s)).powi(2)).sum();
-        if let Common::Factors { factors, width_nm } = &self.common {
-            let weight = |i: usize, j: usize| {
+        if let Common::Factors(common) = &self.common {
+            return common.variance(elastic, |i, j| {
                 let is_stokes = self.emission_nm[j] >= self.excitation_nm[i];
-                if is_stokes { excitation[i] * emission[j] / width_nm[j] } else { 0.0 }
-            };
-            return of_elastic + factors.sum_variance(weight);
+                if is_stokes { excitation[i] * emission[j] / common.width_nm[j] } else { 0.0 }
+            });
         }
         let mut sum = of_elastic;
         for ((i, j), sigma) in self.density_sigma.indexed_iter() {
@@ -198,6 +204,35 @@ impl Reradiation {
             }
         }
         sum.max(0.0)
+    }
+}
+
+impl OfFactors {
+    fn new(matrix: &Matrix, separated: &Separated, mut times: Array2<f64>, width_nm: Vec<f64>) -> Self {
+        // Below the excitation nothing was subtracted.
+        for ((i, j), times) in times.indexed_iter_mut() {
+            *times = if matrix.emission_nm[j] >= matrix.excitation_nm[i] { *times } else { 0.0 };
+        }
+        let own = |j: usize| {
+            let subtracted = times.column(j).into_iter().zip(separated.luminescent_sigma.column(j));
+            let part: f64 =
+                subtracted.map(|(times, sigma)| if *times > 0.0 { (times * sigma).powi(2) } else { 0.0 }).sum();
+            (separated.elastic_sigma[j].powi(2) - part).max(0.0)
+        };
+        let own = (0..times.ncols()).map(own).collect();
+        Self { factors: separated.factors.clone(), width_nm, own, times }
+    }
+
+    /// The variance of a sum over elastic values and cells of the factors, each times its weight. What the factors have too much the elastic
+    /// part has too little; and so it is with what the factors leave in a cell.
+    fn variance(&self, elastic: &[f64], weight: impl Fn(usize, usize) -> f64) -> f64 {
+        let own =
+            |(weight, variance): (&f64, &f64)| if variance.is_finite() { weight * weight * variance } else { 0.0 };
+        let of_own: f64 = elastic.iter().zip(&self.own).map(own).sum();
+        let net = |i: usize, j: usize| weight(i, j) - elastic[j] * self.times[(i, j)];
+        let next_to = self.times.indexed_iter().filter(|(_, times)| **times > 0.0);
+        let left: f64 = next_to.map(|((i, j), _)| net(i, j).powi(2)).sum();
+        of_own + self.factors.sum_variance(net) + left * self.factors.rms.powi(2)
     }
 }
 

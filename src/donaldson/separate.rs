@@ -91,6 +91,17 @@ pub fn separate(matrix: &Matrix, asked: Separate) -> Result<Separated, NotSepara
         return Err(NotSeparated::Rank { rank, most: MOST });
     }
     let (factors, tried) = choose(&known, floor, asked.rank).ok_or(NotSeparated::Undetermined)?;
+    Ok(separated_by(matrix, overlap, floor, factors, tried))
+}
+
+/// The parts that follow from factors.
+pub(super) fn separated_by(
+    matrix: &Matrix,
+    overlap: Overlap,
+    floor: Floor,
+    factors: Factors,
+    tried: Vec<(usize, f64)>,
+) -> Separated {
     let noise = |at: (usize, usize)| {
         let stated = matrix.sigma.as_ref().map(|sigma| sigma[at]).filter(|sigma| sigma.is_finite());
         stated.unwrap_or(if floor.rms.is_finite() { floor.rms.max(factors.rms) } else { factors.rms })
@@ -115,12 +126,7 @@ pub fn separate(matrix: &Matrix, asked: Separate) -> Result<Separated, NotSepara
             matrix.values[*at].is_finite()
                 && (matrix.excitation_nm[at.0] - matrix.emission_nm[column]).abs() <= overlap.reach_nm[at.0] / 2.0
         });
-        // Where the axis of the excitation ends, what its other side would hold is what this side holds.
-        let first_and_last = (matrix.excitation_nm[0], matrix.excitation_nm[shape.0 - 1]);
-        let times = |at: (usize, usize)| {
-            let partner = 2.0 * matrix.emission_nm[column] - matrix.excitation_nm[at.0];
-            if partner < first_and_last.0 || partner > first_and_last.1 { 2.0 } else { 1.0 }
-        };
+        let times = |at: (usize, usize)| overlap.times(matrix, at.0, at.1);
         let usable = || cells.iter().copied().filter(|at| matrix.values[*at].is_finite());
         let sum: f64 = usable().map(|at| times(at) * (matrix.values[at] - luminescent[at])).sum();
         let variance: f64 =
@@ -146,11 +152,11 @@ pub fn separate(matrix: &Matrix, asked: Separate) -> Result<Separated, NotSepara
         findings: Vec::new(),
     };
     separated.findings = findings(matrix, &separated);
-    Ok(separated)
+    separated
 }
 
 /// The cells that hold luminescence alone.
-fn known<'a>(matrix: &'a Matrix, overlap: &Overlap, floor: Floor) -> Known<'a> {
+pub(super) fn known<'a>(matrix: &'a Matrix, overlap: &Overlap, floor: Floor) -> Known<'a> {
     let is_clear = |row: usize, column: usize| {
         matrix.emission_nm[column] > matrix.excitation_nm[row] && !overlap.holds(matrix, row, column)
     };
