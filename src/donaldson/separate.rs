@@ -16,6 +16,9 @@ const MOST: usize = 4;
 /// A residual of so many floors is noise: where light is there is more of it than where none is.
 const AT_THE_FLOOR: f64 = 2.0;
 
+/// So many dark cells say how noisy an excitation is.
+const FEWEST_DARK: usize = 4;
+
 /// What a separation is asked for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Separate {
@@ -155,14 +158,19 @@ pub(super) fn separated_by(
     separated
 }
 
-/// The cells that hold luminescence alone.
+/// The cells that hold luminescence alone. Where no uncertainty is stated, an excitation whose dark cells are noisier than those of the
+/// matrix weighs less by as much: an offset of a whole row would be taken for luminescence.
 pub(super) fn known<'a>(matrix: &'a Matrix, overlap: &Overlap, floor: Floor) -> Known<'a> {
     let is_clear = |row: usize, column: usize| {
         matrix.emission_nm[column] > matrix.excitation_nm[row] && !overlap.holds(matrix, row, column)
     };
+    let of_row: Vec<f64> = Floor::of_rows(matrix, overlap)
+        .iter()
+        .map(|row| if row.count >= FEWEST_DARK && row.rms > floor.rms { (floor.rms / row.rms).powi(2) } else { 1.0 })
+        .collect();
     let weight = |at: (usize, usize)| match &matrix.sigma {
         _ if !is_clear(at.0, at.1) || !matrix.values[at].is_finite() => 0.0,
-        None => 1.0,
+        None => of_row[at.0],
         Some(sigma) if sigma[at] > 0.0 && sigma[at].is_finite() => sigma[at].powi(-2),
         Some(_) => 0.0,
     };
