@@ -105,7 +105,7 @@ fn diagonal(cells: &Cells) -> &'static str {
 fn bands(cells: &Cells) -> String {
     match &cells.sigma {
         Some(_) => "from those stated, taken for independent".to_owned(),
-        None if cells.floor.rms.is_finite() => "from the noise below the excitation".to_owned(),
+        None if cells.floor.rms.is_finite() => "from the noise below the excitation, taken for independent".to_owned(),
         None => "that are not known, and so not drawn".to_owned(),
     }
 }
