@@ -189,12 +189,16 @@ pub(super) fn known<'a>(matrix: &'a Matrix, overlap: &Overlap, floor: Floor) -> 
 /// As few factors as leave no more than noise, with what each rank that was tried leaves.
 fn choose(known: &Known<'_>, floor: Floor, asked: Option<usize>) -> Option<(Factors, Vec<(usize, f64)>)> {
     let (mut tried, mut best): (Vec<(usize, f64)>, Option<Factors>) = (Vec::new(), None);
+    // What is stated of the cells is noise as well: a matrix without any below the excitation may still be uncertain.
+    let stated: Vec<f64> = known.weight.iter().filter(|weight| **weight > 0.0).map(|weight| weight.recip()).collect();
+    let stated = if known.has_sigma { (stated.iter().sum::<f64>() / stated.len() as f64).sqrt() } else { 0.0 };
+    let noise = stated.max(floor.rms);
     for rank in asked.map_or(1..=MOST, |rank| rank..=rank) {
         let Some(factors) = Factors::of(known, rank) else { break };
         tried.push((rank, factors.rms));
         // A factor more that leaves nearly as much fits noise.
         let helps = best.as_ref().is_none_or(|best: &Factors| factors.rms < 0.8 * best.rms);
-        let is_noise = factors.rms <= AT_THE_FLOOR * floor.rms;
+        let is_noise = factors.rms <= AT_THE_FLOOR * noise;
         if helps {
             best = Some(factors);
         }

@@ -39,8 +39,7 @@ fn cells(svg: &str, (excitations, emissions): (usize, usize)) -> std::collection
             "silver" | "lightgray" | "lightgrey" => "#c0c0c0",
             hex => hex,
         };
-        let part =
-            |at: usize| u8::from_str_radix(&fill[2 * at + 1..2 * at + 3], 16).unwrap_or_else(|_| panic!("{fill}"));
+        let part = |at: usize| u8::from_str_radix(&fill[2 * at + 1..2 * at + 3], 16).unwrap();
         let column = ((number("x") - 84.0) / width).round() as usize;
         // Rows are counted from the top of the sheet here, and turned below.
         found.insert((column, number("y").round() as usize), [part(0), part(1), part(2)]);
