@@ -171,6 +171,46 @@ fn the_uncertainty_of_a_prediction_is_its_scatter() {
     }
 }
 
+/// What the factors take too much the elastic part has too little: their sum is known better than either. Two hundred noisy matrices.
+#[test]
+fn the_uncertainty_of_a_prediction_by_factors_is_its_scatter_too() {
+    let (excitation, emission) = (bispectral::axis(300.0, 700.0, 10.0), bispectral::axis(400.0, 700.0, 10.0));
+    // Excited up to where it radiates, so that a good part of the luminescence lies next to the diagonal.
+    let bell = |nm: f64, centre: f64, width: f64| (-((nm - centre) / width).powi(2) / 2.0).exp();
+    let exact = ndarray::Array2::from_shape_fn((excitation.len(), emission.len()), |(i, j)| {
+        let (x, m) = (excitation[i], emission[j]);
+        let mirror = if (x - m).abs() < 1e-6 { bispectral::reflectance(m) } else { 0.0 };
+        let glow = if m >= x { 0.05 * bell(x, 480.0, 40.0) * bell(m, 520.0, 25.0) } else { 0.0 };
+        mirror + glow
+    });
+    let (sigma, trials) = (1e-3, 200);
+    let mut random = Random::new(77);
+    let lamp = Light::named("D65").unwrap();
+    let mut all: Vec<bbrf::donaldson::Prediction> = Vec::new();
+    for _ in 0..trials {
+        let noisy = exact.mapv(|value| value + sigma * random.normal());
+        let given = ndarray::Array2::from_elem(exact.dim(), sigma);
+        let one = bispectral::measurement("a", &excitation, &emission, noisy, Some(given), Some(10.0));
+        let matrix = Matrix::of(&one).unwrap();
+        let parts = separate(&matrix, Separate { rank: Some(1) }).unwrap();
+        all.push(Reradiation::of(&matrix, &parts, Luminescence::Factors).under(&lamp, Extend::Zero));
+    }
+    let mean = |of: &dyn Fn(&bbrf::donaldson::Prediction) -> f64| all.iter().map(of).sum::<f64>() / trials as f64;
+    let (mut propagated, mut apart) = (Vec::new(), Vec::new());
+    // Where there is luminescence to take; elsewhere factors end at 0 and scatter less than they may.
+    let glowing = (0..emission.len()).filter(|j| (470.0..=570.0).contains(&emission[*j]));
+    for j in glowing {
+        let centre = mean(&|one| one.total(j));
+        let scatter = mean(&|one| (one.total(j) - centre).powi(2)).sqrt();
+        propagated.push(mean(&|one| one.total_sigma[j]) / scatter);
+        apart.push(mean(&|one| one.elastic_sigma[j].hypot(one.luminescent_sigma[j])) / scatter);
+    }
+    let ends = |list: &[f64]| (list.iter().copied().fold(f64::MAX, f64::min), list.iter().copied().fold(0.0, f64::max));
+    println!("stated over scatter: {:?}; as if independent: {:?}", ends(&propagated), ends(&apart));
+    assert!(propagated.iter().all(|ratio| (0.85..1.15).contains(ratio)), "{propagated:?}");
+    assert!(ends(&apart).1 > 1.5, "the correlation would not have mattered: {apart:?}");
+}
+
 fn bbrf(folder: &Path, arguments: &[&str]) -> assert_cmd::assert::Assert {
     assert_cmd::Command::cargo_bin("bbrf").unwrap().current_dir(folder).args(arguments).assert()
 }
@@ -244,6 +284,94 @@ fn a_light_that_stops_at_380_nm_is_a_loud_warning_with_its_size() {
     let lost = 1.0 - sum(&value) / sum(&flat);
     assert!((lost - unlit["luminescence_lost"].as_f64().unwrap()).abs() < 1e-9, "{lost} {unlit}");
     bbrf(folder.path(), &["donaldson", "predict", "orange.bbrf"]).success().stderr(contains("warning").not());
+}
+
+/// The made-up orange of the README: a bandpass of one step, noise of 0.0003, six tenths of the luminescence of the others.
+fn noisy_orange() -> Document {
+    let (excitation, emission) = (bispectral::axis(300.0, 780.0, 10.0), bispectral::axis(380.0, 780.0, 10.0));
+    let mut random = Random::new(2001);
+    let values = ndarray::Array2::from_shape_fn((excitation.len(), emission.len()), |(i, j)| {
+        let (x, m) = (excitation[i], emission[j]);
+        let spread = match ((x - m).abs() / 10.0).round() as i32 {
+            0 => 0.96,
+            1 => 0.02,
+            _ => 0.0,
+        };
+        spread * bispectral::reflectance(m) + 6.0 * bispectral::luminescence(x, m) + 3e-4 * random.normal()
+    });
+    let matrix = bispectral::measurement("orange", &excitation, &emission, values, None, None);
+    Document { measurements: vec![matrix], ..Document::default() }
+}
+
+/// With `BBRF_UPDATE=1` the picture is drawn anew; the lines are to be copied from what a failure prints.
+#[test]
+fn the_readme_shows_what_the_commands_print_and_draw() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path();
+    write_file(&noisy_orange(), &path.join("orange.bbrf")).unwrap();
+    let readme = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("README.md")).unwrap();
+    for call in [
+        &["donaldson", "separate", "orange.bbrf", "-o", "parts.bbrf"][..],
+        &["donaldson", "predict", "parts.bbrf", "--light", "D65", "--light", "A"],
+    ] {
+        let printed = String::from_utf8(bbrf(path, call).success().get_output().stdout.clone()).unwrap();
+        for line in printed.lines() {
+            assert!(
+                readme.lines().any(|one| one.trim_end() == line.trim_end()),
+                "not in README.md: {call:?}\n{printed}"
+            );
+        }
+    }
+    bbrf(path, &["report", "orange.bbrf", "--figures", "."]).success();
+    let drawn = std::fs::read(path.join("orange-bispectral-surface.png")).unwrap();
+    let picture = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/images/bispectral.png");
+    if std::env::var_os("BBRF_UPDATE").is_some() {
+        std::fs::write(&picture, &drawn).unwrap();
+    }
+    assert!(std::fs::read(&picture).unwrap() == drawn, "{}: BBRF_UPDATE=1 draws it anew", picture.display());
+}
+
+/// The separation that a file holds is the one that is meant; an outdated one is never used in silence.
+#[test]
+fn a_stored_separation_is_used_while_it_is_of_this_matrix() {
+    let folder = folder();
+    let path = folder.path();
+    bbrf(path, &["donaldson", "separate", "orange.bbrf", "-o", "parts.bbrf"]).success();
+    let colour = |value: &Value| value["predictions"][0]["colour"]["xyz"][1].as_f64().unwrap();
+    let call = |file: &str, rest: &[&str]| json_of(path, &[&["donaldson", "predict", file, "--json"], rest].concat());
+    let (anew, stored) = (call("orange.bbrf", &[]), call("parts.bbrf", &[]));
+    assert_eq!(anew["predictions"][0]["separation"], Value::Null);
+    assert_eq!(stored["predictions"][0]["separation"], "orange-factors");
+    assert_eq!(stored["predictions"][0]["total"], anew["predictions"][0]["total"]);
+    let uncertain = |value: &Value, factors: &str| {
+        let all = value["predictions"][0][factors].as_array().unwrap().clone();
+        all.into_iter().map(|one| one.as_f64().unwrap_or(0.0)).collect::<Vec<f64>>()
+    };
+    let by_factors = |file: &str| uncertain(&call(file, &["--luminescence", "factors"]), "total_standard_uncertainty");
+    for (a, b) in by_factors("orange.bbrf").iter().zip(by_factors("parts.bbrf")) {
+        assert!((a - b).abs() <= 1e-6 * a.abs(), "{a} {b}");
+    }
+    bbrf(path, &["donaldson", "predict", "parts.bbrf"]).success().stderr(contains("warning").not());
+    // Another number of factors is separated anew, and said.
+    let other = ["donaldson", "predict", "parts.bbrf", "--rank", "2"];
+    bbrf(path, &other).success().stderr(contains("`orange-factors` has 1 factor; separated anew with 2"));
+    assert_eq!(call("parts.bbrf", &["--rank", "1"])["predictions"][0]["separation"], "orange-factors");
+    // It is the stored one: with another elastic part the prediction is another.
+    let mut document = bbrf::container::open_verified(&path.join("parts.bbrf")).unwrap();
+    document.factorisations[0].elastic.iter_mut().for_each(|value| *value *= 0.5);
+    write_file(&document, &path.join("halved.bbrf")).unwrap();
+    assert!(colour(&call("halved.bbrf", &[])) < 0.9 * colour(&stored));
+    // The matrix has changed since: said, and not used.
+    let matrix = document.measurements.iter_mut().find(|one| one.id.as_str() == "orange").unwrap();
+    matrix.values[(3, 30)] += 1e-6;
+    write_file(&document, &path.join("stale.bbrf")).unwrap();
+    let warning = contains(
+        "warning: stale.bbrf: the stored separation `orange-factors` is of `orange` as it was before it changed",
+    );
+    bbrf(path, &["donaldson", "predict", "stale.bbrf"]).success().stderr(warning);
+    let stale = call("stale.bbrf", &[]);
+    assert_eq!(stale["predictions"][0]["separation"], Value::Null);
+    assert!((colour(&stale) / colour(&anew) - 1.0).abs() < 1e-4);
 }
 
 #[test]

@@ -39,6 +39,23 @@ fn the_parts_of_a_known_matrix_are_found() {
     }
 }
 
+/// A dark signal that is a little off lifts a whole row, also where no light can be: that is no luminescence.
+#[test]
+fn an_offset_of_one_excitation_is_not_taken_for_light_that_it_excites() {
+    let truth = Bispectral::usual(1);
+    for seed in 0..5 {
+        let mut measurement = truth.measured(1e-3, 30 + seed);
+        let row = truth.excitation_nm.iter().position(|nm| *nm == 520.0).unwrap();
+        measurement.values.row_mut(row).map_inplace(|value| *value += 4e-3);
+        let found = separate(&Matrix::of(&measurement).unwrap(), Separate::default()).unwrap();
+        let excited = found.factors.excitation[(0, row)];
+        let exact = (-((520.0 - 400.0) / 45.0_f64).powi(2) / 2.0).exp();
+        println!("excited at 520 nm: {excited:.3}, truth {exact:.3}");
+        assert!((excited - exact).abs() < 0.1, "{excited} {exact}");
+        assert_eq!(found.factors.rank(), 1, "{:?}", found.tried);
+    }
+}
+
 /// One factor describes them at their noise, and more of them do not run away next to the diagonal, where nothing holds them.
 #[test]
 fn real_matrices_are_separated_at_their_floor() {

@@ -19,8 +19,9 @@ const EXPECTED: f64 = 0.3;
 const TOGETHER: f64 = 10.0;
 /// Passes over both factors.
 const PASSES: usize = 400;
-/// A pass that lowers the cost by less than this is the last.
-const SETTLED: f64 = 1e-10;
+/// A pass that changes no excitation, of which the strongest is 1, by more than this is the last. The cost does not tell: each side
+/// has wishes of its own in it.
+const SETTLED: f64 = 1e-4;
 
 /// Factors of the luminescence.
 #[derive(Debug, Clone, PartialEq)]
@@ -68,6 +69,21 @@ impl Factors {
         }
         let (excitation, emission) = start?;
         complete(known, excitation, emission)
+    }
+
+    /// Factors that were found before, \[k, excitation\] and \[k, emission\], with the covariance that the cells give them; `None` where
+    /// they do not fit the cells.
+    pub(super) fn given(known: &Known<'_>, excitation: &Array2<f64>, emission: &Array2<f64>) -> Option<Self> {
+        let ((k, rows), (other, columns)) = (excitation.dim(), emission.dim());
+        let is_number = |value: &f64| value.is_finite() && *value >= 0.0;
+        if k == 0 || k != other || (rows, columns) != known.values.dim() {
+            return None;
+        }
+        if !excitation.iter().chain(emission).all(is_number) {
+            return None;
+        }
+        let [x, m] = [excitation, emission].map(|side| DMatrix::from_fn(side.ncols(), k, |i, a| side[(a, i)]));
+        complete(known, x, m)
     }
 
     /// The luminescence of a cell.
@@ -143,17 +159,16 @@ fn alternate(
 ) -> Option<(DMatrix<f64>, DMatrix<f64>)> {
     let (values, weight) = known.turned();
     let turned = Known { values: &values, weight, ..*known };
-    let mut before = f64::INFINITY;
     for _ in 0..PASSES {
         normalise(known, &mut excitation, &mut emission);
-        excitation = best(known, &emission, pull(known))?.0;
+        let better = best(known, &emission, pull(known))?;
+        let change = (&better - &excitation).amax();
+        excitation = better;
         normalise(known, &mut excitation, &mut emission);
-        let (better, cost) = best(&turned, &excitation, 0.0)?;
-        emission = better;
-        if before - cost <= SETTLED * before {
+        emission = best(&turned, &excitation, 0.0)?;
+        if change <= SETTLED {
             break;
         }
-        before = cost;
     }
     normalise(known, &mut excitation, &mut emission);
     Some((excitation, emission))
@@ -185,14 +200,11 @@ fn strongest(known: &Known<'_>, excitation: &DMatrix<f64>, emission: &DMatrix<f6
     (0..held.len()).max_by(|a, b| held[*a].total_cmp(&held[*b])).unwrap_or(0)
 }
 
-/// The best factor of one side, given that of the other, with its cost.
-fn best(known: &Known<'_>, other: &DMatrix<f64>, ridge: f64) -> Option<(DMatrix<f64>, f64)> {
+/// The best factor of one side, given that of the other.
+fn best(known: &Known<'_>, other: &DMatrix<f64>, ridge: f64) -> Option<DMatrix<f64>> {
     let (q, g) = normal(known, other, ridge);
     let found = minimise(&q, &g)?;
-    let (rows, k) = (known.values.nrows(), other.ncols());
-    let cost = found.dot(&(&q * &found)) - 2.0 * found.dot(&g);
-    let data: f64 = cells(known).map(|((i, j), weight)| weight * known.values[(i, j)].powi(2)).sum();
-    Some((DMatrix::from_fn(rows, k, |i, c| found[i * k + c]), cost + data))
+    Some(DMatrix::from_fn(known.values.nrows(), other.ncols(), |i, c| found[i * other.ncols() + c]))
 }
 
 /// The normal equations of one side: unknowns row by row, k in each.

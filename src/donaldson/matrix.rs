@@ -91,6 +91,16 @@ impl Matrix {
     /// # Errors
     /// [`NoMatrix`].
     pub fn of(measurement: &Measurement) -> Result<Self, NoMatrix> {
+        let matrix = Self::of_any_size(measurement)?;
+        let (rows, columns) = matrix.values.dim();
+        if rows < 3 || columns < 3 {
+            return Err(NoMatrix::Small { measurement: measurement.id.to_string(), rows, columns });
+        }
+        Ok(matrix)
+    }
+
+    /// The same, however small: one cell can be drawn, if not separated.
+    pub(crate) fn of_any_size(measurement: &Measurement) -> Result<Self, NoMatrix> {
         let name = || measurement.id.to_string();
         if measurement.quantity.kind != QuantityKind::DonaldsonMatrix {
             return Err(NoMatrix::Kind { measurement: name(), found: measurement.quantity.kind });
@@ -112,7 +122,7 @@ impl Matrix {
             return Err(NoMatrix::Twice { measurement: name(), first, second, nm: pair[0].0 });
         }
         let (count, columns) = (states.len(), axis.nm.len());
-        if count < 3 || columns < 3 || measurement.check_shape().is_err() {
+        if count == 0 || columns == 0 || measurement.check_shape().is_err() {
             return Err(NoMatrix::Small { measurement: name(), rows: count, columns });
         }
         let emission_nm = if axis.actual_nm.len() == columns { axis.actual_nm.clone() } else { axis.nm.clone() };

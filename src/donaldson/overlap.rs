@@ -50,6 +50,24 @@ impl Overlap {
     }
 }
 
+impl Overlap {
+    /// How often a cell counts when reflected light is summed at its emission: where the axis of the excitation ends, what its other side
+    /// would hold is what this side holds. 0 where the cell holds none, or no value.
+    pub(super) fn times(&self, matrix: &Matrix, excitation: usize, emission: usize) -> f64 {
+        if self.holds(matrix, excitation, emission) { times_at_the_end(matrix, excitation, emission) } else { 0.0 }
+    }
+}
+
+/// How often a cell next to the diagonal counts, see [`Overlap::times`].
+pub(super) fn times_at_the_end(matrix: &Matrix, excitation: usize, emission: usize) -> f64 {
+    if !matrix.values[(excitation, emission)].is_finite() {
+        return 0.0;
+    }
+    let nm = &matrix.excitation_nm;
+    let twin = 2.0 * matrix.emission_nm[emission] - nm[excitation];
+    if twin < nm[0] || twin > nm[nm.len() - 1] { 2.0 } else { 1.0 }
+}
+
 /// The noise of a matrix where no light can be: emission well below the excitation.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Floor {
@@ -65,16 +83,34 @@ impl Floor {
     /// The floor of a matrix.
     #[must_use]
     pub fn of(matrix: &Matrix, overlap: &Overlap) -> Self {
-        let step = median(steps(&matrix.emission_nm)).max(median(steps(&matrix.excitation_nm)));
-        let dark = |row: usize| overlap.reach_nm[row].max(DARK_STEPS * step);
-        let values: Vec<f64> = below(matrix, 0.0, f64::INFINITY)
-            .filter(|((row, column), _)| matrix.excitation_nm[*row] - matrix.emission_nm[*column] >= dark(*row))
-            .map(|(_, value)| value)
-            .collect();
-        let count = values.len();
-        let mean = |power: i32| values.iter().map(|value| value.powi(power)).sum::<f64>() / count as f64;
-        Self { rms: mean(2).sqrt(), mean: mean(1), count }
+        Self::over(dark(matrix, overlap).map(|(_, value)| value))
     }
+
+    /// The floor of each excitation alone; of those below all emissions there is none.
+    pub(super) fn of_rows(matrix: &Matrix, overlap: &Overlap) -> Vec<Self> {
+        let mut rows = vec![Vec::new(); matrix.excitation_nm.len()];
+        dark(matrix, overlap).for_each(|(row, value)| rows[row].push(value));
+        rows.into_iter().map(|values| Self::over(values.into_iter())).collect()
+    }
+
+    fn over(values: impl Iterator<Item = f64>) -> Self {
+        let (mut count, mut sum, mut square) = (0, 0.0, 0.0);
+        for value in values {
+            (count, sum, square) = (count + 1, sum + value, square + value * value);
+        }
+        Self { rms: (square / count as f64).sqrt(), mean: sum / count as f64, count }
+    }
+}
+
+/// The values where no light can be, each with its row.
+fn dark<'a>(matrix: &'a Matrix, overlap: &'a Overlap) -> impl Iterator<Item = (usize, f64)> + 'a {
+    let step = median(steps(&matrix.emission_nm)).max(median(steps(&matrix.excitation_nm)));
+    below(matrix, 0.0, f64::INFINITY)
+        .filter(move |((row, column), _)| {
+            let from = overlap.reach_nm[*row].max(DARK_STEPS * step);
+            matrix.excitation_nm[*row] - matrix.emission_nm[*column] >= from
+        })
+        .map(|((row, _), value)| (row, value))
 }
 
 /// The values whose emission lies that far below their excitation, in nm.

@@ -3,6 +3,7 @@
 use ndarray::Array2;
 
 use super::factors::Factors;
+use super::overlap::times_at_the_end;
 use super::piecewise::Line;
 use super::{Matrix, NoMatrix, Separated, steps};
 use crate::dataset::Attached;
@@ -53,8 +54,19 @@ enum Common {
     Nothing,
     /// So many times the luminescence of each cell, over its emission's width in nm, was subtracted to get the elastic part.
     Subtracted { times: Array2<f64>, width_nm: Vec<f64> },
-    /// All luminescence is that of the factors, over these widths.
-    Factors { factors: Box<Factors>, width_nm: Vec<f64> },
+    /// All luminescence is that of the factors, and so many times that of each cell was subtracted to get the elastic part.
+    Factors(Box<OfFactors>),
+}
+
+/// What the elastic part and luminescence by factors share.
+#[derive(Debug, Clone, PartialEq)]
+struct OfFactors {
+    factors: Factors,
+    width_nm: Vec<f64>,
+    /// How often the luminescence of each cell was subtracted.
+    times: Array2<f64>,
+    /// Variance of each elastic value without that of the factors.
+    own: Vec<f64>,
 }
 
 /// Arrays that do not fit together.
@@ -97,12 +109,17 @@ impl Reradiation {
         let over_width =
             |part: fn(&(f64, f64)) -> f64| Array2::from_shape_fn(shape, |(i, j)| part(&cells[(i, j)]) / width_nm[j]);
         let (density, density_sigma) = (over_width(|cell| cell.0), over_width(|cell| cell.1));
+        let is_elastic = |j: usize| separated.elastic[j].is_finite();
+        let times =
+            Array2::from_shape_fn(
+                shape,
+                |(i, j)| {
+                    if is_elastic(j) { separated.overlap.times(matrix, i, j) } else { 0.0 }
+                },
+            );
         let common = match luminescence {
-            Luminescence::Factors => Common::Factors { factors: Box::new(factors.clone()), width_nm },
-            _ => {
-                let times = subtracted(matrix, |(i, j)| separated.overlap.holds(matrix, i, j));
-                Common::Subtracted { times, width_nm }
-            }
+            Luminescence::Factors => Common::Factors(Box::new(OfFactors::new(matrix, separated, times, width_nm))),
+            _ => Common::Subtracted { times, width_nm },
         };
         let mut findings = Vec::new();
         let missing = (0..shape.0).flat_map(|i| (0..shape.1).map(move |j| (i, j)));
@@ -157,10 +174,14 @@ impl Reradiation {
         let cells = Array2::from_shape_fn(shape, |at| measured(at).unwrap_or_else(|| by_factors(at)));
         let over_width =
             |part: fn(&(f64, f64)) -> f64| Array2::from_shape_fn(shape, |(i, j)| part(&cells[(i, j)]) / width_nm[j]);
-        let is_estimated = |(i, j): (usize, usize)| {
+        let is_estimated = |i: usize, j: usize| {
             let flags = luminescent.flags_at(matrix.rows[i], j);
             flags.iter().any(|flag| flag == Flag::Interpolated)
         };
+        let times = Array2::from_shape_fn(shape, |(i, j)| match is_estimated(i, j) {
+            true => times_at_the_end(&matrix, i, j),
+            false => 0.0,
+        });
         let missing = Array2::from_shape_fn(shape, |at| usize::from(measured(at).is_none())).sum();
         let elastic: Vec<f64> = parts.elastic.values.row(0).to_vec();
         let sigma = |j: usize| parts.elastic.uncertainty.standard.as_ref().map_or(f64::NAN, |sigma| sigma[(0, j)]);
@@ -173,7 +194,7 @@ impl Reradiation {
         Ok(Self {
             density: over_width(|cell| cell.0),
             density_sigma: over_width(|cell| cell.1),
-            common: Common::Subtracted { times: subtracted(&matrix, is_estimated), width_nm },
+            common: Common::Subtracted { times, width_nm },
             excitation_nm: matrix.excitation_nm,
             emission_nm: matrix.emission_nm,
             elastic,
@@ -243,12 +264,11 @@ impl Reradiation {
     pub(super) fn variance(&self, elastic: &[f64], excitation: &[f64], emission: &[f64]) -> f64 {
         let known = |value: f64| if value.is_finite() { value } else { 0.0 };
         let of_elastic: f64 = elastic.iter().zip(&self.elastic_sigma).map(|(a, s)| (a * known(*s)).powi(2)).sum();
-        if let Common::Factors { factors, width_nm } = &self.common {
-            let weight = |i: usize, j: usize| {
+        if let Common::Factors(common) = &self.common {
+            return common.variance(elastic, |i, j| {
                 let is_stokes = self.emission_nm[j] >= self.excitation_nm[i];
-                if is_stokes { excitation[i] * emission[j] / width_nm[j] } else { 0.0 }
-            };
-            return of_elastic + factors.sum_variance(weight);
+                if is_stokes { excitation[i] * emission[j] / common.width_nm[j] } else { 0.0 }
+            });
         }
         let mut sum = of_elastic;
         for ((i, j), sigma) in self.density_sigma.indexed_iter() {
@@ -263,19 +283,33 @@ impl Reradiation {
     }
 }
 
-/// How often the luminescence of each cell was subtracted to get the elastic part, where reflected light reaches.
-fn subtracted(matrix: &Matrix, is_inside: impl Fn((usize, usize)) -> bool) -> Array2<f64> {
-    let shape = matrix.values.dim();
-    let (first, last) = (matrix.excitation_nm[0], matrix.excitation_nm[shape.0 - 1]);
-    Array2::from_shape_fn(shape, |(i, j)| {
-        // At the end of the axis a cell stands for its twin on the other side as well.
-        let twin = 2.0 * matrix.emission_nm[j] - matrix.excitation_nm[i];
-        match is_inside((i, j)) && matrix.values[(i, j)].is_finite() {
-            true if twin < first || twin > last => 2.0,
-            true => 1.0,
-            false => 0.0,
+impl OfFactors {
+    fn new(matrix: &Matrix, separated: &Separated, mut times: Array2<f64>, width_nm: Vec<f64>) -> Self {
+        // Below the excitation nothing was subtracted.
+        for ((i, j), times) in times.indexed_iter_mut() {
+            *times = if matrix.emission_nm[j] >= matrix.excitation_nm[i] { *times } else { 0.0 };
         }
-    })
+        let own = |j: usize| {
+            let subtracted = times.column(j).into_iter().zip(separated.luminescent_sigma.column(j));
+            let part: f64 =
+                subtracted.map(|(times, sigma)| if *times > 0.0 { (times * sigma).powi(2) } else { 0.0 }).sum();
+            (separated.elastic_sigma[j].powi(2) - part).max(0.0)
+        };
+        let own = (0..times.ncols()).map(own).collect();
+        Self { factors: separated.factors.clone(), width_nm, own, times }
+    }
+
+    /// The variance of a sum over elastic values and cells of the factors, each times its weight. What the factors have too much the elastic
+    /// part has too little; and so it is with what the factors leave in a cell.
+    fn variance(&self, elastic: &[f64], weight: impl Fn(usize, usize) -> f64) -> f64 {
+        let own =
+            |(weight, variance): (&f64, &f64)| if variance.is_finite() { weight * weight * variance } else { 0.0 };
+        let of_own: f64 = elastic.iter().zip(&self.own).map(own).sum();
+        let net = |i: usize, j: usize| weight(i, j) - elastic[j] * self.times[(i, j)];
+        let next_to = self.times.indexed_iter().filter(|(_, times)| **times > 0.0);
+        let left: f64 = next_to.map(|((i, j), _)| net(i, j).powi(2)).sum();
+        of_own + self.factors.sum_variance(net) + left * self.factors.rms.powi(2)
+    }
 }
 
 fn without_elastic(emission_nm: &[f64], elastic: &[f64]) -> Option<String> {

@@ -16,6 +16,9 @@ const MOST: usize = 4;
 /// A residual of so many floors is noise: where light is there is more of it than where none is.
 const AT_THE_FLOOR: f64 = 2.0;
 
+/// So many dark cells say how noisy an excitation is.
+const FEWEST_DARK: usize = 4;
+
 /// What a separation is asked for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Separate {
@@ -91,6 +94,17 @@ pub fn separate(matrix: &Matrix, asked: Separate) -> Result<Separated, NotSepara
         return Err(NotSeparated::Rank { rank, most: MOST });
     }
     let (factors, tried) = choose(&known, floor, asked.rank).ok_or(NotSeparated::Undetermined)?;
+    Ok(separated_by(matrix, overlap, floor, factors, tried))
+}
+
+/// The parts that follow from factors.
+pub(super) fn separated_by(
+    matrix: &Matrix,
+    overlap: Overlap,
+    floor: Floor,
+    factors: Factors,
+    tried: Vec<(usize, f64)>,
+) -> Separated {
     let noise = |at: (usize, usize)| {
         let stated = matrix.sigma.as_ref().map(|sigma| sigma[at]).filter(|sigma| sigma.is_finite());
         stated.unwrap_or(if floor.rms.is_finite() { floor.rms.max(factors.rms) } else { factors.rms })
@@ -115,12 +129,7 @@ pub fn separate(matrix: &Matrix, asked: Separate) -> Result<Separated, NotSepara
             matrix.values[*at].is_finite()
                 && (matrix.excitation_nm[at.0] - matrix.emission_nm[column]).abs() <= overlap.reach_nm[at.0] / 2.0
         });
-        // Where the axis of the excitation ends, what its other side would hold is what this side holds.
-        let first_and_last = (matrix.excitation_nm[0], matrix.excitation_nm[shape.0 - 1]);
-        let times = |at: (usize, usize)| {
-            let partner = 2.0 * matrix.emission_nm[column] - matrix.excitation_nm[at.0];
-            if partner < first_and_last.0 || partner > first_and_last.1 { 2.0 } else { 1.0 }
-        };
+        let times = |at: (usize, usize)| overlap.times(matrix, at.0, at.1);
         let usable = || cells.iter().copied().filter(|at| matrix.values[*at].is_finite());
         let sum: f64 = usable().map(|at| times(at) * (matrix.values[at] - luminescent[at])).sum();
         let variance: f64 =
@@ -146,17 +155,22 @@ pub fn separate(matrix: &Matrix, asked: Separate) -> Result<Separated, NotSepara
         findings: Vec::new(),
     };
     separated.findings = findings(matrix, &separated);
-    Ok(separated)
+    separated
 }
 
-/// The cells that hold luminescence alone.
-fn known<'a>(matrix: &'a Matrix, overlap: &Overlap, floor: Floor) -> Known<'a> {
+/// The cells that hold luminescence alone. Where no uncertainty is stated, an excitation whose dark cells are noisier than those of the
+/// matrix weighs less by as much: an offset of a whole row would be taken for luminescence.
+pub(super) fn known<'a>(matrix: &'a Matrix, overlap: &Overlap, floor: Floor) -> Known<'a> {
     let is_clear = |row: usize, column: usize| {
         matrix.emission_nm[column] > matrix.excitation_nm[row] && !overlap.holds(matrix, row, column)
     };
+    let of_row: Vec<f64> = Floor::of_rows(matrix, overlap)
+        .iter()
+        .map(|row| if row.count >= FEWEST_DARK && row.rms > floor.rms { (floor.rms / row.rms).powi(2) } else { 1.0 })
+        .collect();
     let weight = |at: (usize, usize)| match &matrix.sigma {
         _ if !is_clear(at.0, at.1) || !matrix.values[at].is_finite() => 0.0,
-        None => 1.0,
+        None => of_row[at.0],
         Some(sigma) if sigma[at] > 0.0 && sigma[at].is_finite() => sigma[at].powi(-2),
         Some(_) => 0.0,
     };
@@ -175,12 +189,16 @@ fn known<'a>(matrix: &'a Matrix, overlap: &Overlap, floor: Floor) -> Known<'a> {
 /// As few factors as leave no more than noise, with what each rank that was tried leaves.
 fn choose(known: &Known<'_>, floor: Floor, asked: Option<usize>) -> Option<(Factors, Vec<(usize, f64)>)> {
     let (mut tried, mut best): (Vec<(usize, f64)>, Option<Factors>) = (Vec::new(), None);
+    // What is stated of the cells is noise as well: a matrix without any below the excitation may still be uncertain.
+    let stated: Vec<f64> = known.weight.iter().filter(|weight| **weight > 0.0).map(|weight| weight.recip()).collect();
+    let stated = if known.has_sigma { (stated.iter().sum::<f64>() / stated.len() as f64).sqrt() } else { 0.0 };
+    let noise = stated.max(floor.rms);
     for rank in asked.map_or(1..=MOST, |rank| rank..=rank) {
         let Some(factors) = Factors::of(known, rank) else { break };
         tried.push((rank, factors.rms));
         // A factor more that leaves nearly as much fits noise.
         let helps = best.as_ref().is_none_or(|best: &Factors| factors.rms < 0.8 * best.rms);
-        let is_noise = factors.rms <= AT_THE_FLOOR * floor.rms;
+        let is_noise = factors.rms <= AT_THE_FLOOR * noise;
         if helps {
             best = Some(factors);
         }

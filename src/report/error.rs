@@ -115,6 +115,31 @@ pub enum ReportError {
         /// Different angles of viewing.
         viewings: usize,
     },
+    /// The measurement is no matrix that could be drawn.
+    #[error("map over excitation and emission")]
+    Matrix {
+        /// Why.
+        source: crate::donaldson::NoMatrix,
+    },
+    /// The wavelengths of a matrix do not ascend.
+    #[error("measurement `{measurement}`: its emission wavelengths do not ascend; a map over them needs that")]
+    NotAscending {
+        /// Which measurement.
+        measurement: String,
+    },
+    /// A surface needs neighbours on both axes.
+    #[error(
+        "measurement `{measurement}`: its surface; {excitations} x {emissions} excitations and emissions, expected two of each or \
+         more"
+    )]
+    NoSurface {
+        /// Which measurement.
+        measurement: String,
+        /// Excitations.
+        excitations: usize,
+        /// Emissions.
+        emissions: usize,
+    },
     /// The model cannot be evaluated.
     #[error("model `{model}`: it cannot be evaluated")]
     Terms {

@@ -4,6 +4,7 @@ use kuva::backend::svg::SvgBackend;
 use kuva::render::render::Scene;
 
 use super::ReportError;
+use super::html::escaped;
 
 /// Pixels of the PNG per unit of the drawing.
 const PIXELS_PER_UNIT: f32 = 2.0;
@@ -64,7 +65,9 @@ impl Figure {
         let tree = usvg::Tree::from_str(&self.to_svg(), &options)
             .map_err(|error| ReportError::Svg { figure: self.name.clone(), reason: error.to_string() })?;
         let short = usvg::WriteOptions { coordinates_precision: 2, ..usvg::WriteOptions::default() };
-        Ok(tree.to_string(&short))
+        // The converter leaves roles out; a file that stands alone has its caption as its name.
+        let named = format!("<svg role=\"img\" aria-label=\"{}\" ", escaped(&self.caption));
+        Ok(tree.to_string(&short).replacen("<svg ", &named, 1))
     }
 
     /// The figure as PNG, with two pixels per unit of the SVG. No font of the system is used.

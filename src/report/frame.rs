@@ -3,7 +3,8 @@
 use kuva::render::render::TextAnchor;
 
 use super::canvas::{Area, Canvas, GRID, INK, Style};
-use super::scale::{Scale, Tick};
+use super::scale::Scale;
+use super::ticks::Tick;
 
 /// Sizes of text, in units of the drawing.
 pub(super) const TITLE_SIZE: u32 = 17;
@@ -50,6 +51,12 @@ impl Frame {
         Self { area, x, y, x_ticks, y_ticks }
     }
 
+    /// About so many ticks on each axis; none where 0.
+    pub(super) fn with_ticks(area: Area, (x, across): (Scale, usize), (y, up): (Scale, usize)) -> Self {
+        let ticks = |scale: Scale, count: usize| if count > 0 { scale.ticks(count) } else { Vec::new() };
+        Self { area, x, y, x_ticks: ticks(x, across), y_ticks: ticks(y, up) }
+    }
+
     /// Ticks at measured angles, as many as can be read.
     pub(super) fn over_angles(area: Area, (x, x_deg): (Scale, &[f64]), (y, y_deg): (Scale, &[f64])) -> Self {
         let (x_ticks, y_ticks) = (x.ticks_among(x_deg, 12), y.ticks_among(y_deg, 12));
@@ -74,16 +81,20 @@ impl Frame {
         }
     }
 
-    /// The box, the ticks and all texts.
+    /// The box, the ticks and all texts; an empty label is left out.
     pub(super) fn draw_axes(&self, canvas: &mut Canvas, labels: &Labels<'_>) {
         canvas.outline(self.area, INK, 1.2);
         self.draw_x_ticks(canvas);
         self.draw_y_ticks(canvas);
         let (right, bottom) = (self.area.right(), self.area.bottom());
-        canvas.text((right, bottom + 46.0), &format!("{} →", labels.x), Style::new(LABEL_SIZE, TextAnchor::End));
+        if !labels.x.is_empty() {
+            canvas.text((right, bottom + 46.0), &format!("{} →", labels.x), Style::new(LABEL_SIZE, TextAnchor::End));
+        }
         // Level, above the axis: upright labels are read without turning the head.
-        let label = format!("↑ {}", labels.y);
-        canvas.text((LEFT_MARGIN, self.area.top - 12.0), &label, Style::new(LABEL_SIZE, TextAnchor::Start));
+        if !labels.y.is_empty() {
+            let label = format!("↑ {}", labels.y);
+            canvas.text((LEFT_MARGIN, self.area.top - 12.0), &label, Style::new(LABEL_SIZE, TextAnchor::Start));
+        }
         draw_titles(canvas, self.area.width, labels);
     }
 
@@ -182,7 +193,7 @@ pub(super) fn with_unit(quantity: &str, unit: &str) -> String {
 fn raised_exponent(word: &str) -> String {
     let letters = word.trim_end_matches(|c: char| c.is_ascii_digit() || c == '-');
     let exponent = &word[letters.len()..];
-    if letters.is_empty() { word.to_owned() } else { format!("{letters}{}", super::scale::superscript(exponent)) }
+    if letters.is_empty() { word.to_owned() } else { format!("{letters}{}", super::ticks::superscript(exponent)) }
 }
 
 #[cfg(test)]

@@ -121,7 +121,7 @@ pub(super) fn significant(value: f64, digits: usize) -> String {
     }
     let magnitude = value.abs().log10().floor();
     if !(-4.0..6.0).contains(&magnitude) {
-        return super::scale::power_of_ten(&format!("{value:.*e}", digits.saturating_sub(1)));
+        return super::ticks::power_of_ten(&format!("{value:.*e}", digits.saturating_sub(1)));
     }
     let decimals = (digits as f64 - 1.0 - magnitude).max(0.0) as usize;
     format!("{value:.decimals$}").replacen('-', "\u{2212}", 1)

@@ -4,8 +4,9 @@ use kuva::render::render::TextAnchor;
 
 use super::angle_map::AngleMap;
 use super::canvas::{Area, Canvas, INK, Style};
+use super::colour_bar::{BAR_HEIGHT, draw_colour_bar};
 use super::colours::Colours;
-use super::frame::{Frame, LABEL_SIZE, Labels, TICK_SIZE, with_unit};
+use super::frame::{Frame, Labels, TICK_SIZE, with_unit};
 use super::scale::Scale;
 use super::spline::Filled;
 use super::{Figure, ReportError};
@@ -120,7 +121,8 @@ fn draw(map: &AngleMap, filled: Option<&Filled>, colours: Colours, text: &MapTex
         }
     }
     frame.draw_axes(&mut canvas, &labels);
-    draw_colour_bar(&mut canvas, area, colours, &with_unit(&map.label, &map.unit));
+    let bar = Area::new(area.left, area.bottom() + 74.0, area.width, BAR_HEIGHT);
+    draw_colour_bar(&mut canvas, bar, colours, &with_unit(&map.label, &map.unit));
     draw_legend(&mut canvas, area, seen);
     Figure::new(text.name, text.caption.clone(), canvas.finish())
 }
@@ -149,35 +151,15 @@ fn draw_interpolated(canvas: &mut Canvas, cell: Area, value: f64, colours: Colou
     true
 }
 
-fn draw_mark(canvas: &mut Canvas, cell: Area) {
+pub(super) fn draw_mark(canvas: &mut Canvas, cell: Area) {
     let radius = (cell.width.min(cell.height) / 6.0).min(5.0);
     canvas.dot(cell.centre(), radius + 1.0, kuva::render::color::Color::Rgb(255, 255, 255));
     canvas.dot(cell.centre(), radius, INK);
 }
 
 /// A little larger than the cell, so that no light line shows between neighbours.
-fn overlapping(cell: Area) -> Area {
+pub(super) fn overlapping(cell: Area) -> Area {
     Area::new(cell.left, cell.top, cell.width + 0.4, cell.height + 0.4)
-}
-
-fn draw_colour_bar(canvas: &mut Canvas, above: Area, colours: Colours, label: &str) {
-    const STEPS: usize = 140;
-    let (bar, scale) = (Area::new(above.left, above.bottom() + 74.0, above.width, 18.0), colours.scale());
-    let width = bar.width / STEPS as f64;
-    for step in 0..STEPS {
-        let value = scale.value((step as f64 + 0.5) / STEPS as f64);
-        let left = bar.left + step as f64 * width;
-        canvas.rectangle(Area::new(left, bar.top, width + 0.4, bar.height), colours.colour(value));
-    }
-    canvas.outline(bar, INK, 1.0);
-    for tick in scale.ticks_with_ends(8) {
-        let x = bar.left + bar.width * scale.position(tick.value);
-        canvas.line((x, bar.bottom()), (x, bar.bottom() + 5.0), INK, 1.0);
-        canvas.text((x, bar.bottom() + 20.0), &tick.label, Style::new(TICK_SIZE, TextAnchor::Middle));
-    }
-    let kind = if scale.is_logarithmic() { ", logarithmic scale" } else { "" };
-    let text = format!("colour: {label}{kind}");
-    canvas.text((bar.left, bar.bottom() + 44.0), &text, Style::new(LABEL_SIZE, TextAnchor::Start));
 }
 
 fn draw_legend(canvas: &mut Canvas, above: Area, seen: Seen) {
@@ -202,7 +184,7 @@ fn draw_legend(canvas: &mut Canvas, above: Area, seen: Seen) {
 }
 
 /// The edges between cells: halfway between neighbours, and as far beyond the first and last as to their neighbours.
-fn edges(centres: &[f64]) -> Vec<f64> {
+pub(super) fn edges(centres: &[f64]) -> Vec<f64> {
     let half = |from: usize| (centres[from + 1] - centres[from]) / 2.0;
     let count = centres.len();
     if count < 2 {
@@ -215,6 +197,6 @@ fn edges(centres: &[f64]) -> Vec<f64> {
         .collect()
 }
 
-fn ends(edges: &[f64]) -> Scale {
+pub(super) fn ends(edges: &[f64]) -> Scale {
     Scale::Linear { from: edges[0], to: edges[edges.len() - 1] }
 }

@@ -7,7 +7,9 @@
 
 mod angle_map;
 mod angle_points;
+mod bispectral;
 mod canvas;
+mod colour_bar;
 mod colours;
 mod curve;
 mod design;
@@ -20,6 +22,7 @@ mod histogram;
 mod html;
 mod map;
 mod page;
+mod perspective;
 mod scale;
 mod scan;
 mod separability;
@@ -27,10 +30,12 @@ mod spectrum;
 mod spline;
 mod subject;
 mod surface;
+mod ticks;
 mod trade;
 
 pub use angle_map::AngleMap;
 pub use angle_points::AnglePoints;
+pub use bispectral::{factor_figures, matrix_figures};
 pub use curve::{Curve, CurveText, Points, dots_and_curve, line_in_band};
 pub use design::{DesignPicture, design_figure};
 pub use diagnosis::diagnosis_page;

@@ -2,11 +2,14 @@
 
 use super::fitted::quantity_words;
 use super::html::{Html, escaped, number, value_and_uncertainty};
-use super::{AnglePoints, Drawn, Figure, fitted_figures, measurement_figures, scan_figures, subject};
+use super::{
+    AnglePoints, Drawn, Figure, factor_figures, fitted_figures, matrix_figures, measurement_figures, scan_figures,
+    subject,
+};
 use crate::dataset::{
     Document, FittedParameter, FittedTerm, Measurement, Model, Provenance, Receipt, Sample, Separability,
 };
-use crate::quantity::{EmissionAxis, Flag};
+use crate::quantity::{EmissionAxis, Flag, QuantityKind};
 
 /// The style sheet of the page.
 const STYLE: &str = include_str!("page.css");
@@ -20,6 +23,8 @@ pub struct Pictures {
     pub models: Vec<Drawn>,
     /// One entry per measurement.
     pub measurements: Vec<Drawn>,
+    /// One entry per factorisation.
+    pub factorisations: Vec<Drawn>,
 }
 
 impl Pictures {
@@ -33,17 +38,27 @@ impl Pictures {
         Self {
             models: document.models.iter().map(drawn).collect(),
             measurements: document.measurements.iter().map(|one| measured(document, one)).collect(),
+            factorisations: document.factorisations.iter().map(|one| factor_figures(document, one)).collect(),
         }
+    }
+
+    /// What was drawn and what was not, models first.
+    pub fn all(&self) -> impl Iterator<Item = &Drawn> {
+        self.models.iter().chain(&self.measurements).chain(&self.factorisations)
     }
 
     /// Every figure, models first.
     pub fn figures(&self) -> impl Iterator<Item = &Figure> {
-        self.models.iter().chain(&self.measurements).flat_map(|drawn| &drawn.figures)
+        self.all().flat_map(|drawn| &drawn.figures)
     }
 }
 
-/// A measurement over the angles, where no model shows it so, and over the wavelengths.
+/// A matrix over excitation and emission; any other measurement over the angles, where no model shows it so, and over the
+/// wavelengths.
 fn measured(document: &Document, measurement: &Measurement) -> Drawn {
+    if measurement.quantity.kind == QuantityKind::DonaldsonMatrix {
+        return matrix_figures(document, measurement);
+    }
     let mut drawn = scan_figures(document, measurement);
     let Drawn { figures, not_drawn } = measurement_figures(document, measurement);
     drawn.figures.extend(figures);
@@ -63,6 +78,7 @@ pub fn page(document: &Document, pictures: &Pictures) -> String {
     write_simulated(&mut html, &document.samples);
     write_models(&mut html, document, pictures);
     write_measurements(&mut html, document, pictures);
+    write_factorisations(&mut html, document, pictures);
     write_provenance(&mut html, &document.provenance);
     html.markup("</main>\n</body>\n</html>\n");
     html.finish()
@@ -217,6 +233,27 @@ fn write_measurement(html: &mut Html, document: &Document, measurement: &Measure
     ]);
 }
 
+fn write_factorisations(html: &mut Html, document: &Document, pictures: &Pictures) {
+    if document.factorisations.is_empty() {
+        return;
+    }
+    html.text("h2", "Factors of matrices");
+    for (index, part) in document.factorisations.iter().enumerate() {
+        html.text("h3", part.title.as_deref().unwrap_or(part.id.as_str()));
+        html.facts(&[
+            ("of", Some(format!("measurement {}", part.measurement))),
+            ("factors", Some(part.excitation.nrows().to_string())),
+            ("reflected light", Some(format!("within {} nm of the excitation", number(part.reach_nm)))),
+            ("noise where no light can be", Some(number(part.floor))),
+            ("r.m.s. residual", Some(format!("{} of {} cells", number(part.residual_rms), part.residual_count))),
+            ("method", Some(part.method.clone())),
+            ("digest of the matrix", Some(part.data_digest.clone())),
+        ]);
+        html.list(&part.findings);
+        write_drawn(html, pictures.factorisations.get(index));
+    }
+}
+
 fn sample_title(document: &Document, id: &str) -> String {
     let sample = document.samples.iter().find(|sample| sample.id.as_str() == id);
     sample.and_then(|sample| sample.title.clone()).unwrap_or_else(|| id.to_owned())
@@ -254,9 +291,13 @@ pub(super) fn write_drawn(html: &mut Html, drawn: Option<&Drawn>) {
     if !drawn.figures.is_empty() {
         html.markup("<div class=\"figures\">\n");
         for figure in &drawn.figures {
-            html.markup(&format!("<figure id=\"figure-{}\">\n{}\n", escaped(figure.name()), figure.to_svg()));
-            html.text("figcaption", figure.caption());
-            html.markup("</figure>\n");
+            // The caption is the picture's name for a reader who does not see it.
+            let name = escaped(figure.name());
+            let image = format!("role=\"img\" aria-labelledby=\"caption-{name}\"");
+            let svg = figure.to_svg().replacen("role=\"img\"", &image, 1);
+            html.markup(&format!("<figure id=\"figure-{name}\">\n{svg}\n<figcaption id=\"caption-{name}\">"));
+            html.markup(&escaped(figure.caption()));
+            html.markup("</figcaption>\n</figure>\n");
         }
         html.markup("</div>\n");
     }

@@ -1,5 +1,7 @@
 //! Scales: where on an axis a number stands, and which numbers an axis names.
 
+use super::ticks::{Tick, around_zero_ticks, linear_ticks, logarithmic_factors, logarithmic_ticks, nice_step};
+
 /// A scale between two different finite numbers.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Scale {
@@ -7,13 +9,8 @@ pub(super) enum Scale {
     Linear { from: f64, to: f64 },
     /// Equal distances are equal ratios; both ends are positive.
     Logarithmic { from: f64, to: f64 },
-}
-
-/// A named number on an axis.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) struct Tick {
-    pub(super) value: f64,
-    pub(super) label: String,
+    /// Equal differences around zero, as far as `linear`, and equal ratios beyond it, on both sides.
+    AroundZero { linear: f64, from: f64, to: f64 },
 }
 
 impl Scale {
@@ -35,6 +32,7 @@ impl Scale {
                 let factor = (to / from).powf(share);
                 Self::Logarithmic { from: from / factor, to: to * factor }
             }
+            Self::AroundZero { .. } => self,
         }
     }
 
@@ -42,7 +40,7 @@ impl Scale {
     pub(super) fn including(self, value: f64) -> Self {
         match self {
             Self::Linear { from, to } => Self::Linear { from: from.min(value), to: to.max(value) },
-            Self::Logarithmic { .. } => self,
+            Self::Logarithmic { .. } | Self::AroundZero { .. } => self,
         }
     }
 
@@ -86,6 +84,7 @@ impl Scale {
                     .find(|tick| *tick >= to * (1.0 - 1e-9) && tick.is_finite());
                 Self::Logarithmic { from, to: next.map_or(to, |next| next.max(to)) }
             }
+            Self::AroundZero { .. } => self,
         }
     }
 
@@ -94,6 +93,10 @@ impl Scale {
         match *self {
             Self::Linear { from, to } => (value - from) / (to - from),
             Self::Logarithmic { from, to } => (value / from).ln() / (to / from).ln(),
+            Self::AroundZero { linear, from, to } => {
+                let at = |value: f64| (value / linear).asinh();
+                (at(value) - at(from)) / (at(to) - at(from))
+            }
         }
     }
 
@@ -102,11 +105,20 @@ impl Scale {
         match *self {
             Self::Linear { from, to } => from + position * (to - from),
             Self::Logarithmic { from, to } => from * (to / from).powf(position),
+            Self::AroundZero { linear, from, to } => {
+                let (low, high) = ((from / linear).asinh(), (to / linear).asinh());
+                linear * (low + position * (high - low)).sinh()
+            }
         }
     }
 
-    pub(super) fn is_logarithmic(&self) -> bool {
-        matches!(self, Self::Logarithmic { .. })
+    /// What a reader must know of the scale beside its numbers.
+    pub(super) fn kind(&self) -> &'static str {
+        match self {
+            Self::Linear { .. } => "",
+            Self::Logarithmic { .. } => ", logarithmic",
+            Self::AroundZero { .. } => ", logarithmic away from zero",
+        }
     }
 
     /// About `count` named numbers.
@@ -114,6 +126,7 @@ impl Scale {
         match *self {
             Self::Linear { from, to } => linear_ticks(from, to, count),
             Self::Logarithmic { from, to } => logarithmic_ticks(from, to),
+            Self::AroundZero { linear, from, to } => around_zero_ticks(linear, from, to),
         }
     }
 }
@@ -166,75 +179,6 @@ pub(super) fn extent(values: impl IntoIterator<Item = f64>) -> Option<(f64, f64)
         let (low, high) = extent.unwrap_or((value, value));
         Some((value.min(low), value.max(high)))
     })
-}
-
-fn linear_ticks(from: f64, to: f64, count: usize) -> Vec<Tick> {
-    let step = nice_step((to - from) / count.max(1) as f64);
-    let first = (from / step - 1e-9).ceil();
-    let last = (to / step + 1e-9).floor();
-    let steps = (last - first).clamp(0.0, 1000.0) as usize;
-    (0..=steps)
-        .map(|index| (first + index as f64) * step)
-        .map(|value| Tick { value, label: number_at_step(value, step) })
-        .collect()
-}
-
-/// 1, 2 or 5 times a power of ten, not less than `least`.
-fn nice_step(least: f64) -> f64 {
-    let power = 10f64.powf(least.log10().floor());
-    let factor = [1.0, 2.0, 5.0].into_iter().find(|factor| factor * power >= least * (1.0 - 1e-9)).unwrap_or(10.0);
-    factor * power
-}
-
-/// Which multiples of the powers of ten have ticks.
-fn logarithmic_factors(from: f64, to: f64) -> &'static [f64] {
-    if (to / from).log10() > 3.0 { &[1.0] } else { &[1.0, 2.0, 5.0] }
-}
-
-fn logarithmic_ticks(from: f64, to: f64) -> Vec<Tick> {
-    let factors = logarithmic_factors(from, to);
-    let (first, last) = (from.log10().floor() as i32, to.log10().ceil() as i32);
-    (first..=last)
-        .flat_map(|decade| factors.iter().map(move |factor| factor * 10f64.powi(decade)))
-        .filter(|value| (from * (1.0 - 1e-9)..=to * (1.0 + 1e-9)).contains(value))
-        .map(|value| Tick { value, label: number_at_step(value, value) })
-        .collect()
-}
-
-/// A number with the decimals that a step needs; with a power of ten where it is very large or very small.
-fn number_at_step(value: f64, step: f64) -> String {
-    if value == 0.0 {
-        return "0".to_owned();
-    }
-    if !(1e-4..1e6).contains(&step.abs()) || value.abs() >= 1e6 {
-        let digits = (value.abs() / step).log10().ceil().clamp(0.0, 6.0) as usize;
-        return power_of_ten(&format!("{value:.digits$e}"));
-    }
-    let decimals = (-step.log10() + 1e-9).floor().max(-1.0) as i32 + i32::from(step < 1.0 && !is_power(step));
-    let text = format!("{value:.*}", decimals.max(0) as usize);
-    text.replacen('-', "\u{2212}", 1)
-}
-
-fn is_power(step: f64) -> bool {
-    let exponent = step.log10();
-    (exponent - exponent.round()).abs() < 1e-9
-}
-
-/// `1.5e-7` as 1.5·10⁻⁷.
-pub(super) fn power_of_ten(text: &str) -> String {
-    let Some((mantissa, exponent)) = text.split_once('e') else { return text.to_owned() };
-    format!("{}\u{b7}10{}", mantissa.replacen('-', "\u{2212}", 1), superscript(exponent))
-}
-
-/// Digits and minus raised.
-pub(super) fn superscript(text: &str) -> String {
-    const RAISED: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
-    text.chars()
-        .map(|c| match c {
-            '-' => '⁻',
-            digit => digit.to_digit(10).map_or(digit, |digit| RAISED[digit as usize]),
-        })
-        .collect()
 }
 
 #[cfg(test)]

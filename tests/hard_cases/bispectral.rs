@@ -1,5 +1,6 @@
 //! Bispectral matrices under lights: where steps, bandpasses, the ultraviolet, noise below 0 and colours beyond white go wrong.
 
+use bbrf::donaldson::estimate::{Axes, Lit, Seen, estimate_known};
 use bbrf::donaldson::{Extend, Light, Luminescence, Matrix, Observer, Reradiation, Separate, separate};
 use bbrf::quantity::QuantityKind;
 use ndarray::Array2;
@@ -47,6 +48,97 @@ fn lines() -> Light {
         .map(|nm| 0.1 + [313.1, 365.3, 404.7, 435.8, 546.1, 577.3].map(|line| peak(*nm, line)).iter().sum::<f64>())
         .collect();
     light(&nm, &values)
+}
+
+/// Case 24. Of daylight and illuminant C both parts of a spectrum ask the same near 610 nm: who divides by the determinant there gets a
+/// reflectance of several hundred percent, of either sign.
+#[test]
+fn where_two_lights_tell_nothing_the_band_is_named_and_its_value_stays_a_reflectance() {
+    let bell = |nm: f64, centre: f64, width: f64| (-((nm - centre) / width).powi(2) / 2.0).exp();
+    let (from, nm) = (axis(300.0, 780.0, 10.0), axis(400.0, 700.0, 10.0));
+    let excitation: Vec<f64> = from.iter().map(|nm| bell(*nm, 450.0, 45.0)).collect();
+    let emission = |j: usize| 0.1 * bell(nm[j], 600.0, 30.0);
+    let lights = ["D65", "C"].map(|name| {
+        let (light, plain) = (Light::named(name).unwrap(), surface(&from, &nm));
+        let excitation = plain.shares(&light).iter().map(|share| share / 10.0).collect();
+        Lit { name: name.to_owned(), excitation, emission: plain.under(&light, Extend::Zero).irradiance }
+    });
+    let excited = |light: &Lit, j: usize| -> f64 {
+        (0..from.len()).filter(|i| from[*i] < nm[j]).map(|i| excitation[i] * light.excitation[i]).sum()
+    };
+    let [d65, c] = &lights;
+    let determinant = |j: usize| d65.emission[j] / c.emission[j] - excited(d65, j) / excited(c, j);
+    let at = |wanted: f64| nm.iter().position(|nm| *nm == wanted).unwrap();
+    let zero = (at(580.0)..at(700.0)).find(|j| determinant(*j).signum() != determinant(j + 1).signum()).unwrap();
+    println!("the determinant is 0 between {} and {} nm", nm[zero], nm[zero] + 10.0);
+    assert!((580.0..650.0).contains(&nm[zero]), "{}", nm[zero]);
+
+    let (mut naive, mut worst, mut named) = (0.0_f64, 0.0_f64, 0);
+    for seed in 0..10 {
+        let mut random = Random::new(240 + seed);
+        let seen = lights.clone().map(|light| {
+            let exact = |j: usize| reflectance(nm[j]) * light.emission[j] + emission(j) * excited(&light, j);
+            let exact: Vec<f64> = (0..nm.len()).map(exact).collect();
+            let values = exact.iter().map(|value| value * (1.0 + 0.01 * random.normal())).collect();
+            Seen { light, values, sigma: exact.iter().map(|value| 0.01 * value).collect() }
+        });
+        let axes = Axes { excitation_nm: from.clone(), emission_nm: nm.clone() };
+        let found = estimate_known(&axes, &excitation, &seen).unwrap();
+        let [a, b] = &seen;
+        for j in [zero, zero + 1] {
+            let divided = (a.values[j] / excited(d65, j) - b.values[j] / excited(c, j))
+                / (d65.emission[j] / excited(d65, j) - c.emission[j] / excited(c, j));
+            naive = naive.max((divided - reflectance(nm[j])).abs());
+            named += usize::from(!found.is_told(j));
+        }
+        for (j, nm) in nm.iter().enumerate() {
+            let error = (found.reflectance[j] - reflectance(*nm)).abs();
+            worst = worst.max(error);
+            assert!(error < 0.05 || !found.is_told(j), "{nm}: off by {error} and told");
+            assert!((0.0..=1.5).contains(&found.reflectance[j]), "{nm}: {}", found.reflectance[j]);
+        }
+    }
+    println!("dividing is off by up to {naive:.2}, the estimate by {worst:.3}");
+    assert_eq!(named, 20, "both bands next to the zero are named each time");
+    assert!(naive > 2.0 && worst < 0.5, "{naive} {worst}");
+}
+
+/// Case 25. Cells next to the diagonal are unknown to the factors; two or three of them may do there what they like, and without a prior
+/// they do: the colour was off by 46 (CIE76).
+#[test]
+fn more_factors_than_needed_do_not_run_away_where_no_cell_holds_them() {
+    // Excited up to where it radiates: what lies next to the diagonal counts.
+    let (excitation, emission) = (axis(300.0, 780.0, 10.0), axis(380.0, 780.0, 10.0));
+    let bell = |nm: f64, centre: f64, width: f64| (-((nm - centre) / width).powi(2) / 2.0).exp();
+    let density = |x: f64, m: f64| if m > x { 5e-3 * bell(x, 470.0, 35.0) * bell(m, 520.0, 22.0) } else { 0.0 };
+    let shape = (excitation.len(), emission.len());
+    let luminescent = Array2::from_shape_fn(shape, |(i, j)| density(excitation[i], emission[j]));
+    let elastic: Vec<f64> = emission.iter().map(|nm| reflectance(*nm)).collect();
+    let mirror = |(i, j): (usize, usize)| if (excitation[i] - emission[j]).abs() < 1e-6 { elastic[j] } else { 0.0 };
+    let exact = Array2::from_shape_fn(shape, |at| mirror(at) + 10.0 * luminescent[at]);
+    let d65 = Light::named("D65").unwrap();
+    let known = Reradiation::from_parts(excitation.clone(), emission.clone(), elastic.clone(), luminescent).unwrap();
+    let truth = known.under(&d65, Extend::Zero).colour(Observer::Two).unwrap();
+    let most = 0.05;
+    for seed in 0..5 {
+        let mut random = Random::new(250 + seed);
+        let noisy = exact.mapv(|value| value + 1e-3 * random.normal());
+        let matrix = Matrix::of(&measurement("a", &excitation, &emission, noisy, None, None)).unwrap();
+        for rank in 1..=3 {
+            let parts = separate(&matrix, Separate { rank: Some(rank) }).unwrap();
+            let cells = (0..excitation.len()).flat_map(|i| (0..emission.len()).map(move |j| (i, j)));
+            let next_to = cells.filter(|(i, j)| parts.overlap.holds(&matrix, *i, *j));
+            let highest = next_to.map(|(i, j)| parts.factors.value(i, j)).fold(0.0, f64::max);
+            assert!(highest < 1.5 * most, "{rank} factors: {highest} next to the diagonal, {most} at the peak");
+            let found = Reradiation::of(&matrix, &parts, Luminescence::Factors).under(&d65, Extend::Zero);
+            let away = found.colour(Observer::Two).unwrap().difference(&truth).unwrap().de76;
+            println!(
+                "seed {seed}, {rank} factors: CIE76 {away:.2}, next to the diagonal up to {:.2} of the peak",
+                highest / most
+            );
+            assert!(away < 2.0, "{rank} factors: CIE76 {away}");
+        }
+    }
 }
 
 /// Case 26. A naive product sums the reflected line as if it were a density: at half the step it is half, or twice.

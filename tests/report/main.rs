@@ -2,6 +2,10 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may panic, also in its helpers")]
 
+#[path = "../common/bispectral.rs"]
+mod matrices;
+
+mod bispectral;
 mod gaps;
 mod scan;
 

@@ -65,7 +65,7 @@ fn page_path(arguments: &Arguments) -> Option<PathBuf> {
 }
 
 fn not_drawn(pictures: &Pictures) -> Vec<String> {
-    pictures.models.iter().chain(&pictures.measurements).flat_map(|drawn| drawn.not_drawn.clone()).collect()
+    pictures.all().flat_map(|drawn| drawn.not_drawn.clone()).collect()
 }
 
 fn write_figures(folder: &Path, input: &Path, pictures: &Pictures) -> Result<Vec<String>, miette::Report> {

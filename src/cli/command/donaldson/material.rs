@@ -1,10 +1,30 @@
-//! The matrix that a command is given: `FILE.bbrf#ID`, or `FILE.bbrf` where it holds one.
+//! The matrix that a command is given: `FILE.bbrf#ID`, or `FILE.bbrf` where it holds one; and its separation, as it is stored or anew.
 
 use miette::miette;
 
 use crate::cli::opened::open;
+use crate::container::measurement_digest;
 use crate::dataset::{Document, Measurement};
+use crate::donaldson::{Matrix, Separate, Separated, restored, separate};
 use crate::quantity::{Part, QuantityKind};
+
+/// A matrix that is ready for lights.
+pub(super) struct Material {
+    pub(super) name: String,
+    pub(super) measurement: Measurement,
+    pub(super) matrix: Matrix,
+    pub(super) separated: Separated,
+    pub(super) separation: Separation,
+}
+
+/// Where a separation comes from.
+#[derive(Default)]
+pub(super) struct Separation {
+    /// The factorisation that is used; none where it was made anew.
+    pub(super) stored: Option<String>,
+    /// What the user should know: why a stored one is not used.
+    pub(super) remark: Option<String>,
+}
 
 /// The file and the id of `FILE#ID`.
 pub(in crate::cli::command) fn split(name: &str) -> (&str, Option<&str>) {
@@ -14,11 +34,53 @@ pub(in crate::cli::command) fn split(name: &str) -> (&str, Option<&str>) {
     }
 }
 
-/// The measurement that holds the matrix.
-pub(super) fn load(name: &str) -> Result<Measurement, miette::Report> {
+/// The matrix with its separation: the stored one, unless another number of factors is asked for or the matrix has changed since.
+pub(super) fn load(name: &str, rank: Option<usize>) -> Result<Material, miette::Report> {
     let (path, id) = split(name);
     let document = open(path.as_ref())?.document;
-    pick(&document, path, id).cloned()
+    let measurement = pick(&document, path, id)?.clone();
+    let matrix = Matrix::of(&measurement).map_err(|error| miette!("{name}: {error}"))?;
+    let (separation, separated) = stored(&document, &measurement, &matrix, rank)?;
+    let separated = match separated {
+        Some(separated) => separated,
+        None => separate(&matrix, Separate { rank }).map_err(|error| miette!("{name}: {error}"))?,
+    };
+    Ok(Material { name: name.to_owned(), measurement, matrix, separated, separation })
+}
+
+/// The stored separation, where one can be used, or why it is not.
+fn stored(
+    document: &Document,
+    measurement: &Measurement,
+    matrix: &Matrix,
+    rank: Option<usize>,
+) -> Result<(Separation, Option<Separated>), miette::Report> {
+    let mut parts = document.factorisations.iter().filter(|part| part.measurement == measurement.id).peekable();
+    if parts.peek().is_none() {
+        return Ok((Separation::default(), None));
+    }
+    let digest = measurement_digest(measurement).map_err(|error| miette!("{error}"))?;
+    let mut remark = None;
+    for part in parts {
+        let id = &part.id;
+        let found = part.rank();
+        if part.data_digest != digest {
+            remark = Some(format!(
+                "the stored separation `{id}` is of `{}` as it was before it changed, and is not used; separated anew",
+                measurement.id
+            ));
+        } else if let Some(rank) = rank.filter(|rank| *rank != found) {
+            let factors = if found == 1 { "factor" } else { "factors" };
+            remark = Some(format!(
+                "the stored separation `{id}` has {found} {factors}; separated anew with {rank}, as --rank asks"
+            ));
+        } else if let Some(separated) = restored(matrix, part) {
+            return Ok((Separation { stored: Some(id.to_string()), remark: None }, Some(separated)));
+        } else {
+            remark = Some(format!("the stored separation `{id}` does not fit the axes of its matrix; separated anew"));
+        }
+    }
+    Ok((Separation { stored: None, remark }, None))
 }
 
 /// The matrix of that id in a document, or its only one.

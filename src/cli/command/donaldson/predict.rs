@@ -4,16 +4,12 @@ mod result;
 
 use std::path::PathBuf;
 
-use miette::miette;
-
+use super::material::Material;
 use super::{light_source, material};
 use crate::cli::exit::{CommandResult, Outcome};
 use crate::cli::output::{print_json, print_message, print_text, write_output};
 use crate::cli::overwrite::refuse_overwriting;
-use crate::dataset::Measurement;
-use crate::donaldson::{
-    Extend, Light, Luminescence, Matrix, Observer, Prediction, Reradiation, Separate, Separated, separate,
-};
+use crate::donaldson::{Extend, Light, Luminescence, Observer, Prediction, Reradiation};
 pub(crate) use result::PredictResult;
 
 const EXAMPLES: &str = "\
@@ -25,7 +21,8 @@ Examples:
 
 /// Predict spectrum and colour of a matrix under any light
 ///
-/// The matrix is separated into its elastic and luminescent part first (as `bbrf donaldson separate` does). Light is shared out
+/// The matrix is separated into its elastic and luminescent part first (as `bbrf donaldson separate` does), unless the file has its
+/// separation stored beside it and the matrix is still the same. Light is shared out
 /// between the excitations by exact integrals, so that no line of a lamp is lost and no step matters. Numbers are pi times the
 /// radiance: of the perfect diffuser they equal what falls in. A light that has no value where the matrix is excited or emits is a
 /// warning on standard error, with what is lost. Nothing is clipped: a fluorescent colour may be brighter than white.
@@ -45,7 +42,7 @@ pub(crate) struct Arguments {
     /// Which luminescence: full, as it was measured; stokes, without the noise far below the excitation; factors
     #[arg(long, default_value = "full")]
     luminescence: Luminescence,
-    /// How many factors [default: as few as leave no more than noise]
+    /// How many factors [default: those stored beside the matrix, else as few as leave no more than noise]
     #[arg(long, value_name = "K")]
     rank: Option<usize>,
     /// Also predict with the factors, and without what lies below the excitation, and compare
@@ -60,14 +57,6 @@ pub(crate) struct Arguments {
     /// Write the spectra as CSV, one row per matrix, light and emission
     #[arg(short, long, value_name = "FILE.csv")]
     output: Option<PathBuf>,
-}
-
-/// A matrix that is ready for lights.
-struct Material {
-    name: String,
-    measurement: Measurement,
-    matrix: Matrix,
-    separated: Separated,
 }
 
 /// One prediction, with what it is of.
@@ -92,8 +81,12 @@ pub(crate) fn run(arguments: &Arguments) -> CommandResult {
     let materials = arguments
         .files
         .iter()
-        .map(|name| load(name, arguments.rank))
+        .map(|name| material::load(name, arguments.rank))
         .collect::<Result<Vec<Material>, miette::Report>>()?;
+    for one in &materials {
+        let remark = one.separation.remark.as_ref();
+        remark.iter().for_each(|remark| print_message(&format!("bbrf: warning: {}: {remark}", one.name)));
+    }
     let predicted = predict(arguments, &materials, &lights);
     for one in &predicted {
         let warnings = one.prediction.unlit.iter().map(|unlit| unlit.sentence(&one.prediction.light));
@@ -114,13 +107,6 @@ pub(crate) fn run(arguments: &Arguments) -> CommandResult {
         print_text(&result.text())?;
     }
     Ok(Outcome::Done)
-}
-
-fn load(name: &str, rank: Option<usize>) -> Result<Material, miette::Report> {
-    let measurement = material::load(name)?;
-    let matrix = Matrix::of(&measurement).map_err(|error| miette!("{name}: {error}"))?;
-    let separated = separate(&matrix, Separate { rank }).map_err(|error| miette!("{name}: {error}"))?;
-    Ok(Material { name: name.to_owned(), measurement, matrix, separated })
 }
 
 fn predict<'a>(arguments: &Arguments, materials: &'a [Material], lights: &[Light]) -> Vec<Predicted<'a>> {

@@ -6,14 +6,14 @@ use miette::miette;
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use super::material;
 use crate::cli::exit::{CommandResult, Outcome};
 use crate::cli::opened::{open, open_to_rewrite};
 use crate::cli::output::{print_json, print_text};
 use crate::cli::overwrite::refuse_overwriting;
 use crate::container::{self, measurement_digest};
-use crate::dataset::{Document, Measurement};
+use crate::dataset::Measurement;
 use crate::donaldson::{Balance, Matrix, Separate, Separated, Share, parts, separate};
-use crate::quantity::QuantityKind;
 
 /// Tell the reflected from the luminescent light of a matrix, and factorise the luminescence
 ///
@@ -114,16 +114,13 @@ impl From<&Balance> for BalanceResult {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> CommandResult {
-    let (path, id) = match arguments.file.rsplit_once('#') {
-        Some((path, id)) => (path, Some(id)),
-        None => (arguments.file.as_str(), None),
-    };
+    let (path, id) = material::split(&arguments.file);
     if let Some(output) = &arguments.output {
         refuse_overwriting(output, [PathBuf::from(path)])?;
     }
     let opened = if arguments.output.is_some() { open_to_rewrite(path.as_ref())? } else { open(path.as_ref())? };
     let mut document = opened.document;
-    let measurement = chosen(&document, id).map_err(|error| miette!("{path}: {error}"))?;
+    let measurement = material::pick(&document, path, id)?;
     let matrix = Matrix::of(measurement).map_err(|error| miette!("{path}: {error}"))?;
     let asked = Separate { rank: arguments.rank };
     let separated =
@@ -143,21 +140,6 @@ pub(crate) fn run(arguments: &Arguments) -> CommandResult {
         print_text(&text(&result))?;
     }
     Ok(Outcome::Done)
-}
-
-/// The matrix that is asked for, or the only one.
-pub(super) fn chosen<'a>(document: &'a Document, id: Option<&str>) -> Result<&'a Measurement, miette::Report> {
-    let is_matrix = |measurement: &&Measurement| measurement.quantity.kind == QuantityKind::DonaldsonMatrix;
-    let matrices: Vec<&Measurement> = document.measurements.iter().filter(is_matrix).collect();
-    let ids = || matrices.iter().map(|matrix| matrix.id.to_string()).collect::<Vec<_>>().join(", ");
-    match (id, matrices.as_slice()) {
-        (Some(id), _) => document
-            .measurement(id)
-            .ok_or_else(|| miette!("no measurement `{id}`; the matrices of the file are: {}", ids())),
-        (None, [one]) => Ok(one),
-        (None, []) => Err(miette!("holds no `donaldson-matrix`; import one, as from a .BFC file")),
-        (None, _) => Err(miette!("holds several matrices ({}); name one as FILE#ID", ids())),
-    }
 }
 
 fn known(x: f64) -> Option<f64> {

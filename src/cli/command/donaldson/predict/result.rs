@@ -31,6 +31,8 @@ struct PredictionResult {
     light: String,
     /// Which luminescence was applied: full, stokes or factors.
     luminescence: String,
+    /// The stored separation that was used, by the id of its factorisation; `null` where the matrix was separated anew.
+    separation: Option<String>,
     /// The unit of the spectra: W m-2 nm-1 under a spectral irradiance, else that of a relative light.
     unit: String,
     /// Centres of the emission, nm.
@@ -160,6 +162,7 @@ impl PredictionResult {
             _ => "1",
         };
         let mut findings = one.surface_findings.clone();
+        findings.extend(one.material.separation.remark.clone());
         let dark = all().filter(|j| prediction.irradiance[*j] <= 0.0).count();
         if dark > 0 {
             findings.push(format!(
@@ -171,6 +174,7 @@ impl PredictionResult {
             material: one.material.name.clone(),
             light: prediction.light.clone(),
             luminescence: one.luminescence.to_string(),
+            separation: one.material.separation.stored.clone(),
             unit: unit.to_owned(),
             emission_nm: prediction.emission_nm.clone(),
             irradiance: prediction.irradiance.clone(),
