@@ -230,8 +230,11 @@ fn a_useful_third_light_is_found_and_a_useless_call_is_refused() {
     ));
 }
 
+/// Shares that are covered, the median width of the excitation's intervals, and its error.
+type Found = ([f64; 4], f64, f64);
+
 /// Coverage of the 95 % intervals of one unknown: reflectance, excitation, emission, cells; and the median width of excitation's.
-fn covers(truth: &Truth, lights: &[Lit], noise: f64, seed: u64) -> ([f64; 4], f64, f64) {
+fn covers(truth: &Truth, lights: &[Lit], noise: f64, seed: u64) -> Found {
     let mut random = Random::new(seed);
     let seen: Vec<Seen> = lights.iter().map(|light| truth.seen(light, noise, &mut random)).collect();
     let found = estimate(&truth.axes, &seen, Excitation::Unknown).unwrap();
@@ -316,8 +319,8 @@ fn figures_of_an_unknown_excitation() {
             (&lights[..3], "A + D65 + violet"),
             (&lights[..], "A + D65 + violet + ten LEDs"),
         ] {
-            let each: Vec<([f64; 4], f64, f64)> = (0..8).map(|seed| covers(&truth, lights, 0.01, 17 + seed)).collect();
-            let mean = |of: &dyn Fn(&([f64; 4], f64, f64)) -> f64| each.iter().map(of).sum::<f64>() / each.len() as f64;
+            let each: Vec<Found> = (0..8).map(|seed| covers(&truth, lights, 0.01, 17 + seed)).collect();
+            let mean = |of: fn(&Found) -> f64| each.iter().map(of).sum::<f64>() / each.len() as f64;
             println!(
                 "{name} {which}: covered: reflectance {:.3}, excitation {:.3}, emission {:.3}, cells {:.3}; excitation {:.3} wide, off by {:.3}",
                 mean(&|one| one.0[0]),

@@ -73,7 +73,7 @@ impl Truncated {
         for wall in 0..self.offset.len() {
             let amplitude = a[wall].hypot(b[wall]);
             let cosine = -self.offset[wall] / amplitude;
-            if !(cosine.abs() < 1.0) {
+            if cosine.is_nan() || cosine.abs() >= 1.0 {
                 continue;
             }
             let time = (cosine.acos() - (-a[wall]).atan2(b[wall])).rem_euclid(std::f64::consts::TAU);
