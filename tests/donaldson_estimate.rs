@@ -323,12 +323,12 @@ fn figures_of_an_unknown_excitation() {
             let mean = |of: fn(&Found) -> f64| each.iter().map(of).sum::<f64>() / each.len() as f64;
             println!(
                 "{name} {which}: covered: reflectance {:.3}, excitation {:.3}, emission {:.3}, cells {:.3}; excitation {:.3} wide, off by {:.3}",
-                mean(&|one| one.0[0]),
-                mean(&|one| one.0[1]),
-                mean(&|one| one.0[2]),
-                mean(&|one| one.0[3]),
-                mean(&|one| one.1),
-                mean(&|one| one.2)
+                mean(|one| one.0[0]),
+                mean(|one| one.0[1]),
+                mean(|one| one.0[2]),
+                mean(|one| one.0[3]),
+                mean(|one| one.1),
+                mean(|one| one.2)
             );
         }
     }
