@@ -37,7 +37,7 @@ fn seen() -> Seen {
         let light = Lit::of(&Light::named(name).unwrap(), &axes);
         let mut text = String::new();
         for (j, nm) in axes.emission_nm.iter().enumerate() {
-            let below = (0..excitation.len()).filter(|i| axes.excitation_nm[*i] < *nm);
+            let below = (0..excitation.len()).filter(|i| axes.excitation_nm[*i] <= *nm);
             let excited: f64 = below.map(|i| light.excitation[i] * excitation[i]).sum();
             let value = reflectance[j] + emission[j] * excited / light.emission[j];
             text.push_str(&format!("{nm},{}\n", value * (1.0 + 0.005 * random.normal())));
@@ -104,6 +104,27 @@ fn what_cannot_be_estimated_is_refused_with_what_to_do() {
         ),
         (vec!["--under", "A"], "LIGHT=SPECTRUM"),
         (
+            vec!["--under", "A=A.csv", "--under", "A=D65.csv", "--noise", "0.01", "--quantity", "radiance-factor"],
+            "one spectrum",
+        ),
+        (
+            vec![
+                "--under",
+                "A=A.csv",
+                "--under",
+                "D65=D65.csv",
+                "--noise",
+                "0.01",
+                "--quantity",
+                "radiance-factor",
+                "--emission",
+                "710:800",
+            ],
+            "0 values",
+        ),
+        (vec!["--under", "A=A.csv", "--under", "D65=D65.csv", "--noise", "1e-300"], "as 0.01"),
+        (vec!["--under", "A=A.csv", "--under", "D65=D65.csv", "--excitation-from", "500"], "begin at 400 nm"),
+        (
             vec!["--under", "A=A.csv", "--under", "D65=none.csv", "--noise", "0.01", "--quantity", "radiance-factor"],
             "none.csv",
         ),
@@ -113,5 +134,40 @@ fn what_cannot_be_estimated_is_refused_with_what_to_do() {
         let output = command.assert().code(2).get_output().clone();
         let text = String::from_utf8(output.stderr).unwrap();
         assert!(text.contains(said), "{said}: {text}");
+    }
+}
+
+/// What was estimated, applied to a light, is what was seen under it: steep edges included.
+#[test]
+fn the_estimated_matrix_gives_back_the_spectra_it_was_estimated_from() {
+    let seen = seen();
+    let mut command = bbrf();
+    command.current_dir(seen.folder.path()).args(UNDER);
+    command.args(["--quantity", "radiance-factor", "--excitation", "excitation.csv", "-o", "made.bbrf"]);
+    command.assert().success();
+    for light in ["A", "D65"] {
+        let mut predict = bbrf();
+        predict.current_dir(seen.folder.path());
+        predict.args([
+            "donaldson",
+            "predict",
+            "made.bbrf#estimate",
+            "--light",
+            light,
+            "--luminescence",
+            "factors",
+            "--json",
+        ]);
+        let output = predict.assert().success().get_output().clone();
+        let result: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+        let factors = result["predictions"][0]["radiance_factor"].as_array().unwrap();
+        let text = std::fs::read_to_string(seen.folder.path().join(format!("{light}.csv"))).unwrap();
+        for (line, factor) in text.lines().zip(factors) {
+            let (nm, value) = line.split_once(',').unwrap();
+            let (nm, value): (f64, f64) = (nm.parse().unwrap(), value.parse().unwrap());
+            let found = factor.as_f64().unwrap();
+            // Four standard deviations of the noise.
+            assert!((found / value - 1.0).abs() < 0.02, "{light} {nm}: {found} {value}");
+        }
     }
 }

@@ -53,7 +53,7 @@ impl Truth {
 
     fn luminescent(&self) -> Array2<f64> {
         Array2::from_shape_fn((self.axes.excitation_nm.len(), self.axes.emission_nm.len()), |(i, j)| {
-            let stokes = self.axes.emission_nm[j] > self.axes.excitation_nm[i];
+            let stokes = self.axes.emission_nm[j] >= self.axes.excitation_nm[i];
             if stokes { self.excitation[i] * self.emission[j] } else { 0.0 }
         })
     }
@@ -173,6 +173,7 @@ fn real_matrices_under_real_lights() {
                 told[worst],
                 rms.len()
             );
+            assert!(covered > 0.93, "{name} {pair}: {covered}");
             for (error, told) in rms.iter().zip(&told) {
                 assert!(*error < 0.05 || !told, "{name} {pair}: {rms:?} {told:?}");
             }
@@ -223,6 +224,9 @@ fn a_useful_third_light_is_found_and_a_useless_call_is_refused() {
         estimate(&truth.axes, &wrong, Excitation::Known(&truth.excitation)),
         Err(NoEstimate::Value { .. })
     ));
+    wrong[1] = Seen { light: Lit { name: "again".to_owned(), ..seen[0].light.clone() }, ..seen[1].clone() };
+    let same = estimate(&truth.axes, &wrong, Excitation::Unknown);
+    assert!(matches!(same, Err(NoEstimate::SameLights(_))), "{same:?}");
     wrong[1].values.pop();
     assert!(matches!(
         estimate(&truth.axes, &wrong, Excitation::Known(&truth.excitation)),
@@ -269,7 +273,7 @@ fn an_unknown_excitation_is_answered_by_all_that_fits() {
     // Excited where it is weak half as much again.
     let wrong: Vec<f64> = truth.excitation.iter().map(|x| x * (1.5 - 0.5 * x)).collect();
     let excited = |light: &Lit, shape: &[f64], j: usize| -> f64 {
-        let below = (0..shape.len()).filter(|i| truth.axes.excitation_nm[*i] < truth.axes.emission_nm[j]);
+        let below = (0..shape.len()).filter(|i| truth.axes.excitation_nm[*i] <= truth.axes.emission_nm[j]);
         below.map(|i| light.excitation[i] * shape[i]).sum()
     };
     for j in 5..truth.reflectance.len() {

@@ -157,7 +157,9 @@ fn advice(source: &hdf5_reader::error::Error) -> &'static str {
             "a virtual dataset has its values in other files, and the standard has none (clause 13): copy the values into \
              this one"
         }
-        _ => "the file is damaged, cut short or not HDF5: fetch it again",
+        _ => {
+            "the file is damaged, cut short or not HDF5: fetch it again; files of other formats are read by `bbrf import`"
+        }
     }
 }
 

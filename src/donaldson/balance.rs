@@ -9,7 +9,7 @@ use super::matrix::steps;
 pub struct Share {
     /// Out over in.
     pub value: f64,
-    /// Its standard uncertainty from independent errors.
+    /// Its standard uncertainty; from independent errors where the matrix states them, else with what the errors of a row have in common.
     pub sigma: f64,
 }
 
@@ -27,11 +27,13 @@ pub struct Balance {
 }
 
 /// The balance of each excitation: the luminescence \[excitation, emission\] with its uncertainty, over the widths that it holds,
-/// times the steps of the emission axis, and the reflectance at the excitation. With photons, each cell times emission over
+/// times the steps of the emission axis, and the reflectance at the excitation; `together` is how much larger the uncertainty of a sum is
+/// than that of independent errors. With photons, each cell times emission over
 /// excitation wavelength; values are taken as energy.
 pub(super) fn balance(
     matrix: &Matrix,
     luminescent: impl Fn(usize, usize) -> (f64, f64),
+    together: f64,
     reflectance: impl Fn(f64) -> Option<(f64, f64)>,
 ) -> Vec<Balance> {
     let (steps, widths) = (steps(&matrix.emission_nm), matrix.emission_width_nm());
@@ -47,7 +49,7 @@ pub(super) fn balance(
                     variance += (sigma * weight).powi(2);
                 }
             }
-            Share { value, sigma: variance.sqrt() }
+            Share { value, sigma: together * variance.sqrt() }
         };
         let (photons, luminescent_energy) = (sum(1), sum(0));
         let (reflected, reflected_sigma) = reflectance(excited).unwrap_or((0.0, 0.0));

@@ -285,7 +285,12 @@ fn complete(known: &Known<'_>, excitation: DMatrix<f64>, emission: DMatrix<f64>)
     let freedom = (count as f64 - free.len() as f64).max(1.0);
     let unit = if known.has_sigma { 1.0 } else { sum / freedom };
     let covariance = inverse_over(&q, &free)? * unit;
-    let deviation = |index: usize| covariance[(index, index)].max(0.0).sqrt();
+    // What ended at 0 is known to be small: by how much, its own curvature says.
+    let deviation = |index: usize| match covariance[(index, index)] {
+        variance if variance > 0.0 => variance.sqrt(),
+        _ if fixed.iter().enumerate().any(|(factor, i)| index == x(factor, *i)) => 0.0,
+        _ => (unit / q[(index, index)]).max(0.0).sqrt(),
+    };
     Some(Factors {
         excitation: Array2::from_shape_fn((k, rows), |(a, i)| excitation[(i, a)]),
         emission: Array2::from_shape_fn((k, columns), |(a, j)| emission[(j, a)]),

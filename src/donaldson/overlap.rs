@@ -93,6 +93,15 @@ impl Floor {
         rows.into_iter().map(|values| Self::over(values.into_iter())).collect()
     }
 
+    /// By how much the standard uncertainty of a sum over emissions is larger than that of independent errors, where no light can be:
+    /// what a row has in common (its dark signal, its monitor) does not average out. 1 where too little says it.
+    pub(super) fn together(matrix: &Matrix, overlap: &Overlap) -> f64 {
+        let rows: Vec<Self> = Self::of_rows(matrix, overlap).into_iter().filter(|row| row.count > 1).collect();
+        let sums: f64 = rows.iter().map(|row| (row.mean * row.count as f64).powi(2)).sum();
+        let squares: f64 = rows.iter().map(|row| row.rms.powi(2) * row.count as f64).sum();
+        if rows.len() > 3 && squares > 0.0 { (sums / squares).sqrt().max(1.0) } else { 1.0 }
+    }
+
     fn over(values: impl Iterator<Item = f64>) -> Self {
         let (mut count, mut sum, mut square) = (0, 0.0, 0.0);
         for value in values {

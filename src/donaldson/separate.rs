@@ -141,7 +141,8 @@ pub(super) fn separated_by(
         let column = matrix.emission_nm.iter().position(|emission| (emission - nm).abs() < 1e-6)?;
         elastic[column].is_finite().then(|| (elastic[column], elastic_sigma[column]))
     };
-    let balance = balance(matrix, |i, j| (luminescent[(i, j)], luminescent_sigma[(i, j)]), reflectance);
+    let together = if matrix.sigma.is_none() { Floor::together(matrix, &overlap) } else { 1.0 };
+    let balance = balance(matrix, |i, j| (luminescent[(i, j)], luminescent_sigma[(i, j)]), together, reflectance);
     let mut separated = Separated {
         overlap,
         floor,
@@ -209,6 +210,15 @@ fn choose(known: &Known<'_>, floor: Floor, asked: Option<usize>) -> Option<(Fact
     Some((best?, tried))
 }
 
+/// Root mean square of the cells that could hold luminescence alone, and how many there are.
+fn held(matrix: &Matrix, overlap: &Overlap) -> (f64, usize) {
+    let clear = matrix.values.indexed_iter().filter(|((i, j), value)| {
+        value.is_finite() && matrix.emission_nm[*j] > matrix.excitation_nm[*i] && !overlap.holds(matrix, *i, *j)
+    });
+    let (square, count) = clear.fold((0.0, 0), |(square, count), (_, value)| (square + value * value, count + 1));
+    ((square / f64::from(count.max(1) as u32)).sqrt(), count)
+}
+
 fn findings(matrix: &Matrix, separated: &Separated) -> Vec<String> {
     let mut list = Vec::new();
     let Separated { overlap, floor, factors, .. } = separated;
@@ -234,6 +244,14 @@ fn findings(matrix: &Matrix, separated: &Separated) -> Vec<String> {
             factors.rank(),
             factors.rms,
             factors.rms / floor.rms,
+            floor.rms
+        ));
+    }
+    let (held, cells) = held(matrix, overlap);
+    if floor.count > 0 && cells > 0 && held <= AT_THE_FLOOR * floor.rms {
+        list.push(format!(
+            "no luminescence above the noise: the cells that could hold it have {held:.2e} (root mean square), those where no light can be \
+             {:.2e}; the factor is what noise looks like",
             floor.rms
         ));
     }

@@ -61,7 +61,7 @@ fn where_two_lights_tell_nothing_the_band_is_named_and_its_value_stays_a_reflect
     let axes = Axes { excitation_nm: from.clone(), emission_nm: nm.clone(), width_nm: 10.0 };
     let lights = ["D65", "C"].map(|name| Lit::of(&Light::named(name).unwrap(), &axes));
     let excited = |light: &Lit, j: usize| -> f64 {
-        (0..from.len()).filter(|i| from[*i] < nm[j]).map(|i| excitation[i] * light.excitation[i]).sum()
+        (0..from.len()).filter(|i| from[*i] <= nm[j]).map(|i| excitation[i] * light.excitation[i]).sum()
     };
     let [d65, c] = &lights;
     let determinant = |j: usize| d65.emission[j] / c.emission[j] - excited(d65, j) / excited(c, j);

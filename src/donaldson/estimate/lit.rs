@@ -66,26 +66,48 @@ impl Seen {
     }
 }
 
-/// The average from neighbour to neighbour at each emission, with the uncertainty of independent errors; NaN where no value is.
+/// The average of the samples from neighbour to neighbour at each emission, with the uncertainty of independent errors; NaN where no
+/// value is. Samples at the wavelengths of the matrix stay as they are: an instrument's bandpass is in them already.
 fn averages(spectrum: &Spectrum, axes: &Axes) -> Vec<(f64, f64)> {
     let usable: Vec<usize> = (0..spectrum.nm.len()).filter(|k| spectrum.values[*k].is_finite()).collect();
     if usable.len() < 2 {
         return vec![(f64::NAN, f64::NAN); axes.emission_nm.len()];
     }
     let nm: Vec<f64> = usable.iter().map(|k| spectrum.nm[*k]).collect();
-    let own = tents(&nm);
+    let cells = super::super::matrix::steps(&nm);
     let at = |(tent, centre): (Line, &f64)| {
         if !(nm[0]..=nm[nm.len() - 1]).contains(centre) {
             return (f64::NAN, f64::NAN);
         }
-        let weights: Vec<f64> = own.iter().map(|one| one.integral_with(&tent)).collect();
+        let inside = |k: usize| tent.at(nm[k]).unwrap_or(0.0) * cells[k];
+        let mut weights: Vec<f64> = (0..nm.len()).map(inside).collect();
+        if weights.iter().filter(|weight| **weight > 0.0).count() < 2 {
+            weights = between(&nm, *centre);
+        }
         let whole: f64 = weights.iter().sum();
         let sum = |of: &dyn Fn(usize) -> f64| weights.iter().zip(&usable).map(|(w, k)| of(*k) * w / whole).sum::<f64>();
-        let value = sum(&|k| spectrum.values[k]);
-        let variance: f64 = weights.iter().zip(&usable).map(|(w, k)| (spectrum.sigma[*k] * w / whole).powi(2)).sum();
-        (value, variance.sqrt())
+        let variance: f64 = weights
+            .iter()
+            .zip(&usable)
+            .filter(|(w, _)| **w > 0.0)
+            .map(|(w, k)| (spectrum.sigma[*k] * w / whole).powi(2))
+            .sum();
+        (sum(&|k| spectrum.values[k]), variance.sqrt())
     };
     tents(&axes.emission_nm).into_iter().zip(&axes.emission_nm).map(at).collect()
+}
+
+/// The shares of the two points around a wavelength on the straight line between them.
+fn between(nm: &[f64], centre: f64) -> Vec<f64> {
+    let mut weights = vec![0.0; nm.len()];
+    let after = nm.partition_point(|one| *one < centre).min(nm.len() - 1);
+    if nm[after] == centre || after == 0 {
+        weights[after] = 1.0;
+    } else {
+        let part = (centre - nm[after - 1]) / (nm[after] - nm[after - 1]);
+        (weights[after - 1], weights[after]) = (1.0 - part, part);
+    }
+    weights
 }
 
 #[cfg(test)]
@@ -117,6 +139,20 @@ mod tests {
         assert!(matches!(Seen::of(&relative, &spectrum, &axes()), Err(NoEstimate::Units { .. })));
         let factor = Spectrum { kind: QuantityKind::RadianceFactor, ..spectrum };
         assert!((Seen::of(&relative, &factor, &axes()).unwrap().values[4] - 0.6).abs() < 1e-12);
+    }
+
+    #[test]
+    fn samples_on_the_grid_of_the_matrix_stay_as_they_are() {
+        let nm: Vec<f64> = (0..31).map(|k| 400.0 + 10.0 * f64::from(k)).collect();
+        let values: Vec<f64> = nm.iter().map(|nm| if *nm == 450.0 { 0.9 } else { 0.1 }).collect();
+        let spectrum =
+            Spectrum { kind: QuantityKind::RadianceFactor, sigma: vec![0.01; nm.len()], values: values.clone(), nm };
+        let flat = Light::named("E").unwrap();
+        let seen = Seen::of(&flat, &spectrum, &axes()).unwrap();
+        for (j, value) in seen.values.iter().enumerate() {
+            assert!((value / 100.0 - values[j]).abs() < 1e-12, "{j}: {value}");
+            assert!((seen.sigma[j] / 100.0 - 0.01).abs() < 1e-12);
+        }
     }
 
     #[test]

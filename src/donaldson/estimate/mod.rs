@@ -1,5 +1,5 @@
 //! A matrix from spectra under a few known broadband lights: y_k(em) = r(em) E_k(em) + m(em) C_k(em), where C_k sums the
-//! excitation spectrum times light k below the emission.
+//! excitation spectrum times light k up to the emission.
 //!
 //! For a known excitation spectrum two lights give reflectance and emission at each wavelength, unless their ratio E/C is the
 //! same there: then the determinant is 0 and division gives anything. Reflectance and emission are therefore estimated over
@@ -68,6 +68,12 @@ pub enum NoEstimate {
     /// One light does not tell reflection from luminescence.
     #[error("{0} light; expected two or more: under one light reflected and luminescent light are one sum")]
     Lights(usize),
+    /// Lights of one spectrum.
+    #[error(
+        "lights {0}: all have one spectrum, whatever their strength; expected two that differ: under one spectrum reflected and \
+         luminescent light are one sum"
+    )]
+    SameLights(String),
     /// Arrays that do not fit.
     #[error("light `{light}`: {found} values of {what}; expected {expected}")]
     Length {
@@ -106,6 +112,17 @@ pub enum NoEstimate {
         found: QuantityKind,
         /// What the light holds.
         of_light: QuantityKind,
+    },
+    /// Next to no values.
+    #[error(
+        "the spectra have {found} values at the {emissions} emission wavelengths of the matrix, all lights together; expected more: \
+         wavelengths are in nm"
+    )]
+    Few {
+        /// How many.
+        found: usize,
+        /// Emission wavelengths.
+        emissions: usize,
     },
     /// Nothing to solve.
     #[error("the spectra determine no estimate: too few values, or lights without power")]
@@ -149,5 +166,19 @@ fn check(axes: &Axes, seen: &[Seen]) -> Result<(), NoEstimate> {
             }
         }
     }
+    let first = &seen[0].light;
+    if seen[1..].iter().all(|one| is_proportional(first, &one.light)) {
+        let names = seen.iter().map(|one| format!("`{}`", one.light.name)).collect::<Vec<_>>().join(", ");
+        return Err(NoEstimate::SameLights(names));
+    }
     Ok(())
+}
+
+/// True for lights that differ in strength alone.
+fn is_proportional(a: &Lit, b: &Lit) -> bool {
+    let all = |lit: &Lit| lit.excitation.iter().chain(&lit.emission).copied().collect::<Vec<f64>>();
+    let (a, b) = (all(a), all(b));
+    let size = |list: &[f64]| list.iter().copied().fold(0.0, f64::max);
+    let (of_a, of_b) = (size(&a), size(&b));
+    a.iter().zip(&b).all(|(a, b)| (a / of_a - b / of_b).abs() < 1e-9)
 }

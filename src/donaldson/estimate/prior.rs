@@ -55,7 +55,7 @@ pub(super) fn balance(axes: &Axes, shape: &[f64]) -> DMatrix<f64> {
     let steps = super::super::matrix::steps(&axes.emission_nm);
     let mut rows = DMatrix::zeros(axes.excitation_nm.len(), 2 * n);
     for (i, excited) in axes.excitation_nm.iter().enumerate() {
-        for (j, emitted) in axes.emission_nm.iter().enumerate().filter(|(_, emitted)| *emitted > excited) {
+        for (j, emitted) in axes.emission_nm.iter().enumerate().filter(|(_, emitted)| *emitted >= excited) {
             rows[(i, n + j)] = shape[i] * emitted / excited * steps[j] / axes.width_nm;
         }
         let after = axes.emission_nm.partition_point(|nm| nm < excited);

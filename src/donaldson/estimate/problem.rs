@@ -45,12 +45,13 @@ pub(super) struct Best {
     pub(super) curvature: DMatrix<f64>,
 }
 
-/// The two columns of each light at each emission: (E, C), C summing what is excited below the emission.
+/// The two columns of each light at each emission: (E, C), C summing what is excited up to the emission, as in the factors of a
+/// matrix ([`crate::dataset::Factorisation::luminescent`]).
 pub(super) fn columns(axes: &Axes, light: &Lit, shape: &[f64]) -> Vec<(f64, f64)> {
     let cells = axes.excitation_nm.iter().zip(&light.excitation).zip(shape);
     let cells: Vec<(f64, f64)> = cells.map(|((nm, energy), x)| (*nm, energy * x)).collect();
-    let below = |emission: f64| cells.iter().take_while(|(nm, _)| *nm < emission).map(|(_, part)| part).sum();
-    axes.emission_nm.iter().zip(&light.emission).map(|(nm, energy)| (*energy, below(*nm))).collect()
+    let up_to = |emission: f64| cells.iter().take_while(|(nm, _)| *nm <= emission).map(|(_, part)| part).sum();
+    axes.emission_nm.iter().zip(&light.emission).map(|(nm, energy)| (*energy, up_to(*nm))).collect()
 }
 
 impl<'a> Problem<'a> {

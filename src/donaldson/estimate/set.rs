@@ -80,6 +80,8 @@ pub struct Estimate {
     pub ranges: Vec<Range>,
     /// Excitation spectra in the set; 1 of a known one.
     pub shapes: usize,
+    /// How far the shapes lie from the middle of their prior, as the mean square of their numbers: 1 where they are as it has them.
+    pub strain: f64,
     /// Weighted sum of squares that the best leaves.
     pub chi_square: f64,
     /// Values that it sums over.
@@ -122,7 +124,7 @@ pub fn estimate(axes: &Axes, seen: &[Seen], excitation: Excitation<'_>) -> Resul
         }
     };
     let problem = Problem::new(axes, seen);
-    let shapes = match excitation {
+    let (shapes, strain) = match excitation {
         Excitation::Known(shape) if shape.len() != axes.excitation_nm.len() => {
             let (found, expected) = (shape.len(), axes.excitation_nm.len());
             return Err(NoEstimate::Length {
@@ -132,7 +134,7 @@ pub fn estimate(axes: &Axes, seen: &[Seen], excitation: Excitation<'_>) -> Resul
                 expected,
             });
         }
-        Excitation::Known(shape) => vec![shape.to_vec()],
+        Excitation::Known(shape) => (vec![shape.to_vec()], 1.0),
         Excitation::Unknown => shapes_that_fit(&problem),
     };
     let solve = |shape: Vec<f64>| {
@@ -141,8 +143,11 @@ pub fn estimate(axes: &Axes, seen: &[Seen], excitation: Excitation<'_>) -> Resul
     };
     let members: Vec<Member> = shapes.into_par_iter().filter_map(solve).collect();
     let central = central(&members).ok_or(NoEstimate::Undetermined)?;
+    if central.given.count < axes.emission_nm.len() {
+        return Err(NoEstimate::Few { found: central.given.count, emissions: axes.emission_nm.len() });
+    }
     let is_known = matches!(excitation, Excitation::Known(_));
-    Ok(collect(&problem, &members, central, is_known))
+    Ok(Estimate { strain, ..collect(&problem, &members, central, is_known) })
 }
 
 /// No member of the family is a real spectrum: none comes closer to what is seen than this.
@@ -201,7 +206,7 @@ fn collect(problem: &Problem<'_>, members: &[Member], central: &Member, is_known
         false => shortest(members.iter().map(|member| member.shape[i]).collect(), central.shape[i]),
     };
     let cell = |(i, j): (usize, usize)| {
-        if axes.emission_nm[j] <= axes.excitation_nm[i] {
+        if axes.emission_nm[j] < axes.excitation_nm[i] {
             return Interval { best: 0.0, low: 0.0, high: 0.0 };
         }
         let x = central.shape[i];
@@ -220,6 +225,7 @@ fn collect(problem: &Problem<'_>, members: &[Member], central: &Member, is_known
         luminescent: Array2::from_shape_fn((rows, n), cell),
         lights_alone: (0..n).map(median).collect(),
         shapes: members.len(),
+        strain: 1.0,
         chi_square: central.best.chi_square,
         count: central.given.count,
         prior: prior::words(is_known),

@@ -9,16 +9,17 @@ const WAVES: usize = 6;
 pub(super) const NUMBERS: usize = 6 + WAVES;
 /// Standard deviation of the logarithm of each wave.
 const MODULATION: f64 = 0.25;
-/// The peak may lie from here to 290 nm above, nm.
+/// The peak lies in this range, nm.
 const FROM_NM: f64 = 300.0;
+const TO_NM: f64 = 660.0;
 
 /// The family in words.
-pub(super) const WORDS: &str = "one main band that peaks between 300 and 590 nm, rises slowly and falls steeply, a second band \
+pub(super) const WORDS: &str = "one main band that peaks between 300 and 660 nm, rises slowly and falls steeply, a second band \
                                 below it, and slow modulations";
 
 /// The excitation spectrum of these numbers, 1 at its peak; each is standard normal in the prior.
 pub(super) fn shape(numbers: &[f64; NUMBERS], excitation_nm: &[f64]) -> Vec<f64> {
-    let peak = FROM_NM + 290.0 * normal_share(numbers[0]);
+    let peak = FROM_NM + (TO_NM - FROM_NM) * normal_share(numbers[0]);
     let (rise, fall) = (60.0 * (0.7 * numbers[1]).exp(), 22.0 * (0.6 * numbers[2]).exp());
     let second = 250.0 + (peak - 250.0) * normal_share(numbers[3]);
     let width = 30.0 * (0.5 * numbers[4]).exp();

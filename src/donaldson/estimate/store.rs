@@ -6,11 +6,11 @@ use super::super::store::{Parts, elastic, luminescent_part, named};
 use super::{Axes, Estimate, Interval};
 use crate::dataset::{Acquisition, Excitation, Factorisation, Id, Measurement, Role};
 use crate::quantity::{
-    Bandpass, BandpassCorrection, BandpassShape, Basis, EmissionAxis, NormalisedAt, Part, Quantity, QuantityKind,
+    Bandpass, BandpassCorrection, BandpassShape, Basis, EmissionAxis, Flag, NormalisedAt, Part, Quantity, QuantityKind,
     Uncertainty, WavelengthAxis, WavelengthError,
 };
 
-/// The matrix of an estimate: reflected light where excitation and emission are the same, luminescence above, nothing below.
+/// The matrix of an estimate: the total where excitation and emission are the same, luminescence above, no value below.
 /// Its emission is as wide as a step: spectra are averaged from neighbour to neighbour.
 ///
 /// # Errors
@@ -28,17 +28,23 @@ pub fn matrix(axes: &Axes, found: &Estimate, id: Id) -> Result<Measurement, Wave
         basis: Basis::Energy,
         ..Quantity::unstated(QuantityKind::DonaldsonMatrix)
     };
-    let cell = |of: fn(&Interval) -> f64| {
+    // Where excitation and emission are the same a cell holds both.
+    let cell = |join: fn(&Interval, Option<&Interval>) -> f64| {
         Array2::from_shape_fn(found.luminescent.dim(), |(i, j)| {
             let is_reflected = (axes.excitation_nm[i] - axes.emission_nm[j]).abs() < 1e-6;
-            of(if is_reflected { &found.reflectance[j] } else { &found.luminescent[(i, j)] })
+            if axes.emission_nm[j] < axes.excitation_nm[i] && !is_reflected {
+                return f64::NAN;
+            }
+            join(&found.luminescent[(i, j)], is_reflected.then(|| &found.reflectance[j]))
         })
     };
+    let value = |one: &Interval, other: Option<&Interval>| one.best + other.map_or(0.0, |other| other.best);
+    let sigma = |one: &Interval, other: Option<&Interval>| one.sigma().hypot(other.map_or(0.0, Interval::sigma));
     let rows = (0_u32..).zip(&axes.excitation_nm);
     let rows = rows.map(|(order, _)| Acquisition { excitation: Some(order), ..Acquisition::at(None, order) });
-    let mut measurement =
-        Measurement::new(id, Role::Sample, quantity, emission, rows.collect(), cell(|interval| interval.best));
-    measurement.uncertainty = Uncertainty { standard: Some(cell(known).into_shared()), ..Uncertainty::default() };
+    let mut measurement = Measurement::new(id, Role::Sample, quantity, emission, rows.collect(), cell(value));
+    measurement.uncertainty = Uncertainty { standard: Some(cell(sigma).into_shared()), ..Uncertainty::default() };
+    measurement.flags = below(axes).into_shared();
     let state = |nm: &f64| Excitation { wavelength_nm: Some(*nm), ..Excitation::default() };
     measurement.excitations = axes.excitation_nm.iter().map(state).collect();
     Ok(measurement)
@@ -84,16 +90,25 @@ pub fn parts(
         ),
         findings: found.findings(axes),
     };
-    let cells = |of: fn(&Interval) -> f64| found.luminescent.map(of);
-    let flags = Array2::zeros(found.luminescent.dim());
+    let cells = |of: fn(&Interval) -> f64| {
+        let is_below = below(axes);
+        Array2::from_shape_fn(found.luminescent.dim(), |at| {
+            if is_below[at] == 0 { of(&found.luminescent[at]) } else { f64::NAN }
+        })
+    };
+    let flags = below(axes);
     Some(Parts {
         elastic: elastic(measurement, axis, &reflectance, &reflectance_sigma),
-        luminescent: luminescent_part(measurement, cells(|one| one.best), cells(known), flags),
+        luminescent: luminescent_part(measurement, cells(|one| one.best), cells(Interval::sigma), flags),
         factorisation,
     })
 }
 
-/// The standard uncertainty of a cell; of one that holds nothing by physics none is stated.
-fn known(interval: &Interval) -> f64 {
-    if interval.high > 0.0 { interval.sigma() } else { f64::NAN }
+/// Nothing radiates below its excitation: such cells have no value, and nobody looked.
+fn below(axes: &Axes) -> Array2<u16> {
+    let shape = (axes.excitation_nm.len(), axes.emission_nm.len());
+    Array2::from_shape_fn(shape, |(i, j)| {
+        let is_below = axes.emission_nm[j] < axes.excitation_nm[i] - 1e-6;
+        if is_below { Flag::NotMeasuredByDesign.bit() } else { 0 }
+    })
 }

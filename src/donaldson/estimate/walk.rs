@@ -31,8 +31,9 @@ struct Walker {
     cost: f64,
 }
 
-/// Shapes as probable as they are frequent here; empty where none could be solved. Deterministic.
-pub(super) fn shapes_that_fit(problem: &Problem<'_>) -> Vec<Vec<f64>> {
+/// Shapes as probable as they are frequent here; empty where none could be solved. Deterministic. With them the mean square of the
+/// numbers that make them: 1 for shapes as the prior has them.
+pub(super) fn shapes_that_fit(problem: &Problem<'_>) -> (Vec<Vec<f64>>, f64) {
     let cost = |numbers: &Numbers| {
         let best = problem.given(&shape(numbers, &problem.axes.excitation_nm)).best();
         best.map_or(f64::INFINITY, |best| best.cost + numbers.iter().map(|x| x * x).sum::<f64>())
@@ -69,7 +70,9 @@ pub(super) fn shapes_that_fit(problem: &Problem<'_>) -> Vec<Vec<f64>> {
             kept.extend(halves.iter().flatten().filter(|walker| walker.cost.is_finite()).map(|walker| walker.numbers));
         }
     }
-    kept.iter().map(|numbers| shape(numbers, &problem.axes.excitation_nm)).collect()
+    let squares: f64 = kept.iter().flatten().map(|x| x * x).sum();
+    let strain = squares / (kept.len().max(1) * NUMBERS) as f64;
+    (kept.iter().map(|numbers| shape(numbers, &problem.axes.excitation_nm)).collect(), strain)
 }
 
 /// The least cost, and by how much costs are divided on the way: walkers that are spread over more than the noise would all stay

@@ -36,7 +36,7 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "FILE")]
     excitation: Option<String>,
     /// Relative standard uncertainty of spectra that state none
-    #[arg(long, value_name = "SHARE", value_parser = positive)]
+    #[arg(long, value_name = "SHARE", value_parser = share)]
     noise: Option<f64>,
     /// What the numbers of spectra are that do not say it: radiance-factor or spectral-radiance
     #[arg(long)]
@@ -64,6 +64,9 @@ pub(crate) struct Arguments {
     json: bool,
 }
 
+/// So many excitations take a minute, and no broadband light tells more.
+const MOST: usize = 250;
+
 fn pair(text: &str) -> Result<(String, String), String> {
     let (light, spectrum) = text.split_once('=').ok_or("expected LIGHT=SPECTRUM, as D65=under_d65.csv")?;
     if light.is_empty() || spectrum.is_empty() {
@@ -75,6 +78,11 @@ fn pair(text: &str) -> Result<(String, String), String> {
 fn positive(text: &str) -> Result<f64, String> {
     let number: Option<f64> = text.parse().ok().filter(|x: &f64| *x > 0.0 && x.is_finite());
     number.ok_or_else(|| "expected a positive number".to_owned())
+}
+
+fn share(text: &str) -> Result<f64, String> {
+    let number: Option<f64> = text.parse().ok().filter(|x| (1e-6..=1.0).contains(x));
+    number.ok_or_else(|| "expected a share from 0.000001 to 1, as 0.01 for 1 %".to_owned())
 }
 
 fn range(text: &str) -> Result<(f64, f64), String> {
@@ -106,6 +114,9 @@ pub(crate) fn run(arguments: &Arguments) -> CommandResult {
     };
     let excitation = known.as_deref().map_or(Excitation::Unknown, Excitation::Known);
     let found = estimate::estimate(&axes, &seen, excitation).map_err(|error| miette!("{error}"))?;
+    if let Some(contradiction) = found.contradiction() {
+        print_message(&format!("bbrf: warning: {contradiction}"));
+    }
     let candidates = candidates(arguments, &lights, &axes)?;
     let (helpful, now) = third_light(&axes, &found, &seen, &candidates).map_err(|error| miette!("{error}"))?;
     let names: Vec<String> = lights.iter().map(|light| light.name().to_owned()).collect();
@@ -126,12 +137,18 @@ pub(crate) fn run(arguments: &Arguments) -> CommandResult {
 /// Emissions, and excitations on the same raster, so that reflected light has cells of its own.
 fn axes(arguments: &Arguments) -> Result<Axes, miette::Report> {
     let (step, (from, to)) = (arguments.step, arguments.emission);
+    let first = arguments.excitation_from;
     let count = ((to - from) / step + 1e-9).floor() as usize + 1;
-    let below = ((from - arguments.excitation_from) / step + 1e-9).floor().max(0.0) as usize;
-    if count < 3 || count + below > 1000 {
+    if first > from {
         return Err(miette!(
-            "--step {step}, --emission {from}:{to}, --excitation-from {}: {count} emissions and {} excitations; expected 3 to 1000",
-            arguments.excitation_from,
+            "--excitation-from {first}, --emission {from}:{to}: expected excitations that begin at {from} nm or below: what is excited at the \
+             wavelength of its emission or below counts"
+        ));
+    }
+    let below = ((from - first) / step + 1e-9).floor() as usize;
+    if count < 3 || count + below > MOST {
+        return Err(miette!(
+            "--step {step}, --emission {from}:{to}, --excitation-from {first}: {count} emissions and {} excitations; expected 3 to {MOST}",
             count + below
         ));
     }

@@ -101,7 +101,8 @@ pub(in crate::cli::command) fn pick<'a>(
             .ok_or_else(|| miette!("{path}: no measurement `{id}`; matrices of the file: {}", or_none(names()))),
         (None, [one]) => Ok(one),
         (None, []) => Err(miette!(
-            help = "`bbrf info` lists what a file holds; `bbrf import` reads matrices of other formats",
+            help = "`bbrf info` lists what a file holds; a matrix whose source does not say what its numbers are is imported with \
+                    `bbrf import --quantity donaldson-matrix`",
             "{path}: found no measurement of quantity `donaldson-matrix`; expected one"
         )),
         (None, _) => Err(miette!("{path}: holds several matrices ({}); name one as {path}#ID", names())),

@@ -183,7 +183,10 @@ fn text(result: &SeparateResult) -> String {
     for tried in &result.tried {
         let taken = if tried.rank == result.rank { ", taken" } else { "" };
         let what = if tried.rank == 1 { "factor leaves" } else { "factors leave" };
-        lines.push(format!("  {} {what} {:.2e}{taken}", tried.rank, tried.residual_rms));
+        let times = result.floor.filter(|floor| *floor > 0.0).map(|floor| tried.residual_rms / floor);
+        let times =
+            times.map_or_else(String::new, |times| format!(" ({times:.1} times the noise; up to 2 count as noise)"));
+        lines.push(format!("  {} {what} {:.2e}{times}{taken}", tried.rank, tried.residual_rms));
     }
     for (k, (excitation, emission)) in result.excitation_factors.iter().zip(&result.emission_factors).enumerate() {
         let (from, to) = (peak(excitation, &result.excitation_nm), peak(emission, &result.emission_nm));

@@ -163,7 +163,7 @@ impl EstimateResult {
         lines.extend(self.findings.iter().map(|finding| format!("  {finding}")));
         if let [first, ..] = self.further_lights.as_slice() {
             lines.push(format!(
-                "  one more light that would help most: {} (reflectance to +-{:.4}; now +-{:.4}, root mean square)",
+                "  one more light that would help most: {} (reflectance to +-{:.4}; now +-{:.4}, root mean square, for the best excitation spectrum)",
                 first.light, first.reflectance_standard_uncertainty, self.reflectance_standard_uncertainty
             ));
         }

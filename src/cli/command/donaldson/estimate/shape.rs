@@ -5,9 +5,7 @@ use miette::miette;
 use super::super::{light_source, material};
 use crate::cli::opened::open;
 use crate::dataset::Factorisation;
-use crate::donaldson::Light;
-use crate::donaldson::estimate::{Axes, Lit};
-use crate::quantity::QuantityKind;
+use crate::donaldson::estimate::Axes;
 
 /// The spectrum on the axis of the matrix, 1 at its peak; 0 where it has no value.
 pub(super) fn load(name: &str, axes: &Axes) -> Result<Vec<f64>, miette::Report> {
@@ -34,7 +32,7 @@ pub(super) fn load(name: &str, axes: &Axes) -> Result<Vec<f64>, miette::Report> 
         return of_factors(name, factors, axes);
     }
     let loaded = light_source::load(name)?;
-    scaled(name, &Lit::of(&loaded.light, axes))
+    scaled(name, loaded.light.nm(), loaded.light.values(), axes)
 }
 
 fn of_factors(name: &str, factors: &Factorisation, axes: &Axes) -> Result<Vec<f64>, miette::Report> {
@@ -45,20 +43,25 @@ fn of_factors(name: &str, factors: &Factorisation, axes: &Axes) -> Result<Vec<f6
             factors.rank()
         ));
     }
-    let values = factors.excitation.row(0).to_vec();
-    let light = Light::new(name, QuantityKind::RelativeSpectrum, factors.excitation_nm.clone(), values, None)
-        .map_err(|error| miette!("--excitation {name}: {error}"))?;
-    scaled(name, &Lit::of(&light, axes))
+    scaled(name, &factors.excitation_nm, &factors.excitation.row(0).to_vec(), axes)
 }
 
-/// Its mean in each cell, over the largest.
-fn scaled(name: &str, lit: &Lit) -> Result<Vec<f64>, miette::Report> {
-    let last = lit.excitation.len() - 1;
-    // The cells at both ends are half ones.
-    let whole = |(k, value): (usize, &f64)| if k == 0 || k == last { 2.0 * value } else { *value };
-    let values: Vec<f64> = lit.excitation.iter().enumerate().map(whole).collect();
+/// Its values at the excitations, straight between its own wavelengths, over the largest; 0 outside and where noise is below 0.
+fn scaled(name: &str, nm: &[f64], values: &[f64], axes: &Axes) -> Result<Vec<f64>, miette::Report> {
+    let at = |wanted: &f64| {
+        let after = nm.partition_point(|one| one < wanted);
+        match (nm.get(after), after) {
+            (Some(one), _) if one == wanted => values[after],
+            (None, _) | (_, 0) => 0.0,
+            (Some(one), _) => {
+                let part = (wanted - nm[after - 1]) / (one - nm[after - 1]);
+                values[after - 1] + part * (values[after] - values[after - 1])
+            }
+        }
+    };
+    let values: Vec<f64> = axes.excitation_nm.iter().map(|nm| at(nm).max(0.0)).collect();
     let most = values.iter().copied().fold(0.0, f64::max);
-    if most > 0.0 {
+    if most > 0.0 && most.is_finite() {
         Ok(values.iter().map(|value| value / most).collect())
     } else {
         Err(miette!("--excitation {name}: nothing above 0 from the first excitation to the last; expected a spectrum"))

@@ -31,14 +31,20 @@ impl PredictResult {
     }
 
     pub(in super::super) fn text(&self) -> String {
+        // Names are whole, and never touch.
+        let width = |of: fn(&super::PredictionResult) -> &String, least: usize| {
+            self.predictions.iter().map(|one| of(one).chars().count() + 2).max().unwrap_or(0).max(least)
+        };
+        let (first, second) = (width(|one| &one.material, 34), width(|one| &one.light, 14));
+        let names = first + second + 10;
         let mut lines = vec![format!(
-            "{:<34}{:<14}{:<10}{:>10}{:>10}{:>10}{:>9}{:>9}{:>9}{:>10}",
+            "{:<first$}{:<second$}{:<10}{:>10}{:>10}{:>10}{:>9}{:>9}{:>9}{:>10}",
             "matrix", "light", "lumin.", "X", "Y", "Z", "L*", "a*", "b*", "whiteness"
         )];
         for one in &self.predictions {
-            let names = format!("{:<34}{:<14}{:<10}", one.material, one.light, one.luminescence);
+            let name = format!("{:<first$}{:<second$}{:<10}", one.material, one.light, one.luminescence);
             let Some(colour) = &one.colour else {
-                lines.push(format!("{names}no colour"));
+                lines.push(format!("{name}no colour"));
                 continue;
             };
             let [x, y, z] = colour.xyz;
@@ -47,9 +53,9 @@ impl PredictResult {
                 Some(whiteness) if colour.whiteness_is_defined => format!("{whiteness:>10.2}"),
                 _ => format!("{:>10}", "-"),
             };
-            lines.push(format!("{names}{x:>10.4}{y:>10.4}{z:>10.4}{l:>9.3}{a:>9.3}{b:>9.3}{whiteness}"));
+            lines.push(format!("{name}{x:>10.4}{y:>10.4}{z:>10.4}{l:>9.3}{a:>9.3}{b:>9.3}{whiteness}"));
             if let Some([l, a, b]) = colour.lab_standard_uncertainty.filter(|sigma| sigma.iter().any(|s| *s > 0.0)) {
-                lines.push(format!("{:<58}{:>30}{l:>9.3}{a:>9.3}{b:>9.3}", "", "standard uncertainty"));
+                lines.push(format!("{:<names$}{:>30}{l:>9.3}{a:>9.3}{b:>9.3}", "", "standard uncertainty"));
             }
         }
         for one in &self.differences {
