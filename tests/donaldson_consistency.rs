@@ -10,7 +10,7 @@ mod common {
 }
 
 use bbrf::container::measurement_digest;
-use bbrf::dataset::{Document, Id, Measurement, ReflectanceSource};
+use bbrf::dataset::{Document, Excitation, Id, Measurement, ReflectanceSource};
 use bbrf::donaldson::{Consistency, Extend, Light, attach};
 use bbrf::fit::{FitOptions, fit_measurement};
 use bbrf::quantity::{Bandpass, Component, CorrelatedOver, EmissionAxis, Part, Reference, WavelengthAxis};
@@ -165,6 +165,12 @@ fn what_cannot_be_checked_is_said() {
     let outside = checked(document(&scan));
     assert!(outside.shapes.is_empty(), "{outside:?}");
     assert!(outside.findings.iter().any(|finding| finding.contains("from 300 to 780 nm")), "{:?}", outside.findings);
+    // A light of the CIE that the file names and does not hold.
+    scan.excitations[0] = Excitation { light: Some(Id::new("d65").unwrap()), ..Excitation::default() };
+    let light = bbrf::dataset::Light { id: Id::new("d65").unwrap(), ..bbrf::dataset::Light::default() };
+    let named = Document { lights: vec![light], ..document(&scan) };
+    let named = checked(named);
+    assert!(named.shapes[0].light.as_ref().unwrap().contains("d65"), "{named:?}");
     scan.excitations.clear();
     scan.acquisitions.iter_mut().for_each(|row| row.excitation = None);
     let unknown = checked(document(&scan));

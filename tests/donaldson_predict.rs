@@ -286,6 +286,14 @@ fn a_light_that_stops_at_380_nm_is_a_loud_warning_with_its_size() {
     bbrf(folder.path(), &["donaldson", "predict", "orange.bbrf"]).success().stderr(contains("warning").not());
 }
 
+#[test]
+fn a_text_of_several_spectra_is_no_light() {
+    let folder = folder();
+    std::fs::write(folder.path().join("observer.csv"), "380,1.5,2.5,3.5\n390,2.5,3.5,4.5\n400,3.5,4.5,5.5\n").unwrap();
+    let run = bbrf(folder.path(), &["donaldson", "predict", "orange.bbrf", "--light", "observer.csv"]);
+    run.code(2).stderr(contains("found 3 spectra; expected one"));
+}
+
 /// The made-up orange of the README: a bandpass of one step, noise of 0.0003, six tenths of the luminescence of the others.
 fn noisy_orange() -> Document {
     let (excitation, emission) = (bispectral::axis(300.0, 780.0, 10.0), bispectral::axis(380.0, 780.0, 10.0));

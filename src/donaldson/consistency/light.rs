@@ -23,7 +23,11 @@ pub(super) fn lamp(document: &Document, scan: &Measurement, state: Option<u32>) 
     let state = state.and_then(|index| scan.excitations.get(usize::try_from(index).ok()?));
     let stored = |id: &str| {
         let light = document.lights.iter().find(|light| light.id.as_str() == id)?;
-        let (light, _) = Light::of_stored(id, light.spectrum.as_ref()?).ok()?;
+        let Some(spectrum) = light.spectrum.as_ref() else {
+            let name = format!("the CIE's light `{id}`, which the file names without a spectrum");
+            return Some(Lamp { light: Light::named(id)?, is_measured: false, name });
+        };
+        let (light, _) = Light::of_stored(id, spectrum).ok()?;
         Some(Lamp { light, is_measured: true, name: format!("the light `{id}`") })
     };
     let band = state.and_then(band);

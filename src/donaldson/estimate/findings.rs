@@ -69,7 +69,8 @@ impl Estimate {
 }
 
 /// Wavelengths as ranges of neighbours: `410, 600 to 640 nm`.
-pub(crate) fn bands(axis: &[f64], chosen: &[f64]) -> String {
+#[must_use]
+pub fn bands(axis: &[f64], chosen: &[f64]) -> String {
     let place = |nm: f64| axis.iter().position(|one| *one == nm).unwrap_or(0);
     let mut runs: Vec<(f64, f64)> = Vec::new();
     for nm in chosen {

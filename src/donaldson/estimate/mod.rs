@@ -21,7 +21,7 @@ mod third;
 mod truncated;
 mod walk;
 
-pub(crate) use findings::bands;
+pub use findings::bands;
 pub use lit::Spectrum;
 pub use set::{Estimate, Excitation, Interval, Range, UNTOLD, estimate};
 pub use store::{matrix, parts};

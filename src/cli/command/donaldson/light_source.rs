@@ -35,6 +35,13 @@ pub(in crate::cli::command) fn load(name: &str) -> Result<Loaded, miette::Report
     }
     let options = Options { role: Some(Role::Lamp), allow_partial_grid: true, ..Options::default() };
     let document = import(&[PathBuf::from(name)], &options).map_err(|error| miette!("{error}"))?;
+    let records: u64 = document.provenance.receipts.iter().flat_map(|one| &one.inputs).map(|one| one.records).sum();
+    if records > 1 {
+        return Err(miette!(
+            help = "keep the column or the record that is the light",
+            "--light {name}: found {records} spectra; expected one: two columns (nm, value), or one record"
+        ));
+    }
     of_document(name, name, None, &document)
 }
 
