@@ -36,7 +36,7 @@ pub(crate) struct Arguments {
     /// Count energy or photons, converted last
     #[arg(long)]
     basis: Option<Basis>,
-    /// The measurement, by id [default: the only one, or the only one that is a factor]
+    /// The measurement, by id [default: the only one, or the only factor that is no part of a matrix]
     #[arg(long, value_name = "ID")]
     measurement: Option<String>,
     /// Another width or norm of a model's Gaussian: gaussian-half-height, gaussian, torrance-sparrow-1967,

@@ -23,7 +23,7 @@ pub(crate) struct Arguments {
     /// The format
     #[arg(long, value_enum)]
     to: Format,
-    /// The measurement, by id [default: the only one, or the only one that is a factor; a matrix: the only Donaldson matrix]
+    /// The measurement, by id [default: the only one, or the only factor that is no part of a matrix; a matrix: the only Donaldson matrix]
     #[arg(long, value_name = "ID")]
     measurement: Option<String>,
     /// Only the rows of this geometry: theta_i,phi_i,theta_v,phi_v in degrees; the rest of the file is not read
@@ -150,12 +150,18 @@ pub(super) fn chosen<'a>(document: &'a Document, id: Option<&str>) -> Result<&'a
             .measurement(id)
             .ok_or_else(|| miette!("there is no measurement `{id}`; expected one of: {listed}"));
     }
-    let is_factor = |kind: QuantityKind| kind.is_factor();
-    let factors: Vec<&Measurement> = document.measurements.iter().filter(|m| is_factor(m.quantity.kind)).collect();
-    match (document.measurements.as_slice(), factors.as_slice()) {
-        ([only], _) => Ok(only),
-        (_, [only]) => Ok(only),
-        ([], _) => Err(miette!("the file holds no measurement")),
+    let factors = document.measurements.iter().filter(|one| one.quantity.kind.is_factor());
+    // What a separation stores beside a matrix is a part of the complete model, and not what a file is about.
+    let attachments = || document.models.iter().filter_map(|model| model.donaldson.as_ref());
+    let whole = factors.clone().filter(|one| attachments().all(|attached| attached.elastic != one.id));
+    match (
+        document.measurements.as_slice(),
+        factors.collect::<Vec<_>>().as_slice(),
+        whole.collect::<Vec<_>>().as_slice(),
+    ) {
+        ([only], ..) => Ok(only),
+        (_, [only], _) | (_, _, [only]) => Ok(only),
+        ([], ..) => Err(miette!("the file holds no measurement")),
         _ => Err(miette!(help = "name one with --measurement", "the file holds several measurements: {listed}")),
     }
 }
