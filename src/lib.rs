@@ -12,6 +12,7 @@
 //! - [`validate`]: rules with stable ids, and what they find.
 //! - [`fit`]: least squares over the terms, without a starting point.
 //! - [`donaldson`]: bispectral matrices separated, factorised, estimated from a few lights, and applied to any.
+//! - [`simulate`]: a sphere drawn with the terms, at the limit of the machine.
 //! - [`report`]: figures and the HTML page.
 
 pub mod container;
@@ -22,6 +23,7 @@ pub mod fit;
 pub mod import;
 pub mod quantity;
 pub mod report;
+pub mod simulate;
 pub mod terms;
 pub mod validate;
 

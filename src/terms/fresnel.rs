@@ -18,6 +18,7 @@ pub struct FresnelValue {
 /// error stays at a few 1e-15 for n - 1 down to the smallest positive number (the textbook form is off by 1e-7 at
 /// n - 1 = 1e-10, and its tangents by everything at normal incidence).
 #[must_use]
+#[inline(always)]
 pub fn fresnel(half: &HalfAngles, index_minus_one: f64) -> FresnelValue {
     let (m, c) = (index_minus_one, half.cos_q);
     let k = m * (2.0 + m);

@@ -1,0 +1,90 @@
+//! A sphere of radius 1 as a film sees it from afar: which pixels it covers, and the normal at each.
+//!
+//! x points to the right, y up and z to the camera. Normals are made as they are needed: reading them from memory would take
+//! longer.
+
+use std::ops::Range;
+
+use super::vector::Vector;
+
+/// The sphere on a film, seen along parallel lines (orthographically).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sphere {
+    /// Centre, in pixels from the left edge and from the upper edge.
+    centre: [f64; 2],
+    /// Radius, pixels.
+    radius: f64,
+    inverse: f64,
+}
+
+/// Numbers that are no place on a film.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[error(
+    "a sphere of radius {radius} pixels around ({}, {}); expected a radius from 0.001 to 1e6 and a centre within 1e6 pixels",
+    centre[0],
+    centre[1]
+)]
+pub struct NoSphere {
+    /// Centre, pixels.
+    pub centre: [f64; 2],
+    /// Radius, pixels.
+    pub radius: f64,
+}
+
+impl Sphere {
+    /// A sphere by its centre (pixels from the left and the upper edge; the middle of the first pixel is at 0.5, 0.5) and its
+    /// radius in pixels. It may reach beyond the film.
+    ///
+    /// # Errors
+    /// [`NoSphere`] for numbers that no film has a place for.
+    pub fn new(centre: [f64; 2], radius: f64) -> Result<Self, NoSphere> {
+        let near = centre.iter().all(|value| value.abs() <= 1e6);
+        if !near || !(1e-3..=1e6).contains(&radius) {
+            return Err(NoSphere { centre, radius });
+        }
+        Ok(Self { centre, radius, inverse: 1.0 / radius })
+    }
+
+    /// The largest sphere on a film.
+    ///
+    /// # Errors
+    /// [`NoSphere`] for a film without pixels.
+    pub fn filling(width: usize, height: usize) -> Result<Self, NoSphere> {
+        Self::new([width as f64 / 2.0, height as f64 / 2.0], width.min(height) as f64 / 2.0)
+    }
+
+    /// How far a row lies above the centre, pixels.
+    #[inline(always)]
+    pub(super) fn up(&self, row: usize) -> f64 {
+        self.centre[1] - (row as f64 + 0.5)
+    }
+
+    /// How far a column lies to the right of the centre, pixels.
+    #[inline(always)]
+    pub(super) fn right(&self, column: usize) -> f64 {
+        (column as f64 + 0.5) - self.centre[0]
+    }
+
+    /// The normal at a pixel whose middle is so far from the centre. Where z is 0 the pixel is not on the sphere: one that is
+    /// seen at exactly 90 degrees has no extent on the film. The differences of squares are those of pixels, which for a sphere
+    /// placed on whole and half pixels are exact up to the edge.
+    #[inline(always)]
+    pub(super) fn normal(&self, right: f64, up: f64) -> Vector {
+        let depth = (self.radius * self.radius - up * up) - right * right;
+        [right * self.inverse, up * self.inverse, depth.max(0.0).sqrt() * self.inverse]
+    }
+
+    /// Columns of a row outside which the sphere is not; one more at each end than it needs, for the rounding of the root.
+    pub(super) fn columns(&self, row: usize, width: usize) -> Range<usize> {
+        let up = self.up(row);
+        let square = self.radius * self.radius - up * up;
+        if square.is_nan() || square <= 0.0 {
+            return 0..0;
+        }
+        let half = square.sqrt();
+        // A negative number becomes 0.
+        let first = (self.centre[0] - half - 1.5).floor() as usize;
+        let last = (self.centre[0] + half + 1.5).ceil() as usize;
+        first.min(width)..last.min(width)
+    }
+}
