@@ -13,7 +13,8 @@ use std::process::Command;
 use std::time::Instant;
 
 use bbrf::donaldson::{Extend, Light, Observer};
-use bbrf::simulate::{Component, Film, Lighting, Renderer, Scene, Spectral, Sphere, render_dense};
+use bbrf::simulate::convex::{Component, Lighting, Renderer, Scene, Sphere, render_dense};
+use bbrf::simulate::{Film, Spectral};
 use bbrf::terms::{Denominator, Distribution, TorranceSparrow};
 
 const SIDE: usize = 1128;

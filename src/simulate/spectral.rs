@@ -2,7 +2,7 @@
 
 use ndarray::Array2;
 
-use super::scene::Colours;
+use super::convex::Colours;
 use crate::donaldson::{Extend, Light, Observer, Reradiation, steps};
 
 /// The bispectral surface, the irradiance and the observer on the wavelengths of the matrix.

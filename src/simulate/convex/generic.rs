@@ -3,8 +3,8 @@
 
 use super::lighting::Rays;
 use super::scene::{Colours, Scene};
-use super::vector::{Vector, cross, dot, length};
 use crate::quantity::{Direction, Geometry, Reference};
+use crate::simulate::vector::{Vector, cross, dot, length};
 use crate::terms::{Term, Undefined};
 
 /// Writes a row of three planes.

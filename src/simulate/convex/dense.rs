@@ -4,12 +4,12 @@
 
 use rayon::prelude::*;
 
-use super::film::Film;
 use super::lighting::{Lighting, Parallel, Point, Rays};
 use super::lobe::Lobe;
 use super::scene::{Colours, Scene};
 use super::shade::{Frame, LANES, Lanes};
-use super::spectral::Spectral;
+use crate::simulate::film::Film;
+use crate::simulate::spectral::Spectral;
 
 /// Draws the total image with the spectra in full; the colours of the scene are not used. False where the specular term is one
 /// that [`super::Renderer`] draws by the terms themselves; the film is then as it was.

@@ -7,7 +7,8 @@ mod bispectral;
 mod scans;
 
 use bbrf::donaldson::{Extend, Light, Observer};
-use bbrf::simulate::{Colours, Component, Film, Lighting, Renderer, Scene, Spectral, Sphere, Way, render_dense};
+use bbrf::simulate::convex::{Colours, Component, Lighting, Renderer, Scene, Sphere, Way, render_dense};
+use bbrf::simulate::{Film, Spectral};
 use bbrf::terms::{Denominator, Distribution, TorranceSparrow};
 use scans::Random;
 

@@ -5,7 +5,7 @@
 
 use std::ops::Range;
 
-use super::vector::Vector;
+use crate::simulate::vector::Vector;
 
 /// The sphere on a film, seen along parallel lines (orthographically).
 #[derive(Debug, Clone, Copy, PartialEq)]

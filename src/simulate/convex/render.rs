@@ -2,13 +2,13 @@
 
 use rayon::prelude::*;
 
-use super::film::Film;
 use super::generic;
 use super::lighting::{Lighting, Parallel, Point, Rays};
 use super::lobe::Lobe;
 use super::scene::{Component, Scene};
 use super::shade::{Frame, Row};
 use crate::quantity::named;
+use crate::simulate::film::Film;
 use crate::terms::Undefined;
 
 /// Rows that a thread takes at least.

@@ -1,7 +1,7 @@
 //! Lights without extent: parallel rays, and a point.
 
-use super::vector::{Vector, dot, length, minus, scaled};
 use crate::quantity::HalfAngles;
+use crate::simulate::vector::{Vector, dot, length, minus, scaled};
 use crate::terms::fresnel;
 
 /// Where the light comes from. x points to the right, y up, z to the camera; the sphere has radius 1 and its centre at 0.

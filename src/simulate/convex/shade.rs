@@ -5,7 +5,7 @@ use super::lighting::Rays;
 use super::lobe::Lobe;
 use super::scene::{Colours, Scene};
 use super::sphere::Sphere;
-use super::vector::{dot, minus};
+use crate::simulate::vector::{dot, minus};
 use crate::terms::Denominator;
 
 /// Pixels at once.

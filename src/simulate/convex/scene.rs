@@ -2,8 +2,8 @@
 
 use super::lighting::Lighting;
 use super::sphere::Sphere;
-use super::vector::length;
 use crate::quantity::named;
+use crate::simulate::vector::length;
 use crate::terms::{InvalidParameter, Term, TorranceSparrow};
 
 named! {
