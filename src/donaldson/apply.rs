@@ -2,7 +2,7 @@
 
 use super::colour::{Colour, Observer, VISIBLE_NM};
 use super::light::{Extend, Light};
-use super::piecewise::{Line, tents};
+use super::piecewise::Line;
 use super::predict::{Prediction, Sums, Visible};
 use super::reradiation::Reradiation;
 use super::unlit::unlit;
@@ -34,7 +34,7 @@ impl Reradiation {
     /// The irradiance that each excitation takes part in: a spectrum shared out between the centres, nothing lost and nothing twice.
     #[must_use]
     pub fn shares(&self, light: &Light) -> Vec<f64> {
-        tents(&self.excitation_nm).iter().map(|tent| light.line().integral_with(tent)).collect()
+        light.shares(&self.excitation_nm)
     }
 
     /// Under a light as it is, 0 where it has no value.

@@ -1,6 +1,6 @@
 //! What falls on a surface: a spectrum on an axis of its own.
 
-use super::piecewise::Line;
+use super::piecewise::{Line, tents};
 use crate::quantity::{QuantityKind, named};
 
 /// The spectral power of a light on its own wavelengths; straight lines between them, and nothing known outside.
@@ -149,6 +149,13 @@ impl Light {
             values.push(values[values.len() - 1]);
         }
         Self { line: Line::new(nm, values), ..self.clone() }
+    }
+
+    /// What of it each of these wavelengths (nm, ascending) takes part in: shared out between neighbours by their distance, nothing
+    /// lost and nothing twice; what lies outside them is left out.
+    #[must_use]
+    pub fn shares(&self, nm: &[f64]) -> Vec<f64> {
+        tents(nm).iter().map(|tent| self.line.integral_with(tent)).collect()
     }
 
     /// Its spectrum as a line.

@@ -1,0 +1,187 @@
+//! The specular term between any two directions, and directions drawn where it is bright.
+
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
+
+use super::vector::{Vector, across, along, dot, minus, plus, scaled};
+use crate::quantity::HalfAngles;
+use crate::terms::{Denominator, Distribution, Lobe, TorranceSparrow, fresnel};
+
+/// Angles of viewing that the light from all around is tabulated at.
+const VIEWS: usize = 65;
+/// Points of the sum over the half vectors, in polar angle and over half a turn.
+const POLARS: usize = 64;
+const AZIMUTHS: usize = 32;
+
+/// An interface, with what depends on its parameters alone. Its intensity is left to the spectra.
+#[derive(Debug, Clone)]
+pub(super) struct Interface {
+    lobe: Lobe,
+    spread: Spread,
+    denominator: Denominator,
+    index_minus_one: f64,
+}
+
+/// How polar angles of half vectors are drawn.
+#[derive(Debug, Clone, Copy)]
+enum Spread {
+    /// Density proportional to phi exp(-rate phi^2), up to a right angle.
+    Gaussian { rate: f64 },
+    /// By the slopes' own distribution.
+    Beckmann { width: f64 },
+    /// By the slopes' own distribution.
+    TrowbridgeReitz { width: f64 },
+}
+
+impl Interface {
+    pub(super) fn new(term: &TorranceSparrow) -> Self {
+        let width = term.roughness;
+        let spread = match term.distribution.gaussian_width(width) {
+            Some(width) => Spread::Gaussian { rate: (width * width).recip() },
+            None if term.distribution == Distribution::Beckmann => Spread::Beckmann { width },
+            None => Spread::TrowbridgeReitz { width },
+        };
+        Self {
+            lobe: term.distribution.lobe(width),
+            spread,
+            denominator: term.denominator,
+            index_minus_one: term.refractive_index - 1.0,
+        }
+    }
+
+    /// D F G / den; 0 where light or view is below the horizon.
+    #[inline]
+    pub(super) fn value(&self, normal: Vector, light: Vector, view: Vector) -> f64 {
+        let (cos_i, cos_v) = (dot(normal, light), dot(normal, view));
+        if cos_i < 0.0 || cos_v < 0.0 {
+            return 0.0;
+        }
+        let sum = plus(light, view);
+        let length = dot(sum, sum).sqrt();
+        if length == 0.0 {
+            return 0.0;
+        }
+        let apart = minus(normal, scaled(sum, 1.0 / length));
+        let s = (0.25 * dot(apart, apart)).min(1.0);
+        let between = minus(light, view);
+        let cos_phi = ((cos_i + cos_v) / length).min(1.0);
+        let half = HalfAngles {
+            phi: 2.0 * s.sqrt().asin(),
+            sin_phi: 2.0 * (s * (1.0 - s)).sqrt(),
+            cos_phi,
+            cos_q: 0.5 * length,
+            sin2_q: 0.25 * dot(between, between),
+        };
+        let d = self.lobe.evaluate(&half).value;
+        if d == 0.0 {
+            return 0.0;
+        }
+        d * (fresnel(&half, self.index_minus_one).value * self.masking(cos_i, cos_v, 4.0 * cos_phi / length))
+    }
+
+    /// G over the denominator in a form that keeps its one-sided limit where light or view grazes: a division by 0 gives an infinite
+    /// number, and the other is taken.
+    fn masking(&self, cos_i: f64, cos_v: f64, twice_ratio: f64) -> f64 {
+        let over = |cosine: f64, other: f64| (1.0 / cosine).min(twice_ratio * (other / cosine).min(1.0));
+        match self.denominator {
+            Denominator::CosThetaI => over(cos_i, cos_v),
+            Denominator::CosThetaV => over(cos_v, cos_i),
+            Denominator::CosICosV => (1.0 / (cos_i * cos_v)).min(twice_ratio / cos_i.max(cos_v)),
+        }
+    }
+
+    /// The most that D F G / den can be where the half vector stands at least so far from the normal (rad) and light and view are
+    /// not both further than so from it (cosine): F and G/den at their largest. Infinite where nothing bounds it.
+    pub(super) fn most(&self, phi: f64, least_cos_q: f64) -> f64 {
+        let (sin_phi, cos_phi) = phi.sin_cos();
+        let half = HalfAngles { phi, sin_phi, cos_phi, cos_q: 1.0, sin2_q: 0.0 };
+        let d = self.lobe.evaluate(&half).value;
+        if d == 0.0 {
+            return 0.0;
+        }
+        if self.denominator == Denominator::CosICosV || least_cos_q <= 0.0 {
+            return f64::INFINITY;
+        }
+        let least = HalfAngles { cos_q: least_cos_q, sin2_q: 1.0 - least_cos_q * least_cos_q, ..half };
+        // F grows with theta_Q; G over one cosine is at most 2 cos(phi) / cos(theta_Q). D may grow again next to 90 degrees
+        // (Beckmann, Trowbridge-Reitz with a roughness above 1): the largest of a fine grid covers that.
+        let d = (0..=64).map(|k| phi + (FRAC_PI_2 - phi) * f64::from(k) / 64.0).fold(d, |most, phi| {
+            let (sin_phi, cos_phi) = phi.sin_cos();
+            most.max(self.lobe.evaluate(&HalfAngles { phi, sin_phi, cos_phi, ..half }).value)
+        });
+        d * fresnel(&least, self.index_minus_one).value * 2.0 * cos_phi / least_cos_q
+    }
+
+    /// A direction of light for a view, drawn by the lobe, with D F G / den over pi times its density; `None` where it falls below
+    /// the horizon.
+    pub(super) fn draw(&self, normal: Vector, view: Vector, numbers: [f64; 2]) -> Option<(Vector, f64)> {
+        let (cos_phi, sin_phi, density) = self.spread.draw(numbers[0]);
+        let [a, b] = across(normal);
+        let (sin, cos) = (TAU * numbers[1]).sin_cos();
+        let half = along(along(scaled(normal, cos_phi), a, sin_phi * cos), b, sin_phi * sin);
+        let cos_q = dot(half, view);
+        if cos_q <= 0.0 || density <= 0.0 {
+            return None;
+        }
+        let light = minus(scaled(half, 2.0 * cos_q), view);
+        if dot(normal, light) <= 0.0 {
+            return None;
+        }
+        let weight = self.value(normal, light, view) * 4.0 * cos_q / (PI * density);
+        weight.is_finite().then_some((light, weight))
+    }
+
+    /// What the interface sends of light from all around, over that which a perfect diffuser does, at cosines of viewing from 0 to 1.
+    pub(super) fn surrounded(&self) -> Vec<f64> {
+        let normal = [0.0, 0.0, 1.0];
+        let mean = |cosine: f64| {
+            let view = [(1.0 - cosine * cosine).max(0.0).sqrt(), 0.0, cosine];
+            let mut sum = 0.0;
+            for polar in 0..POLARS {
+                for azimuth in 0..AZIMUTHS {
+                    // Half a turn stands for the other: the angle from the plane of viewing, not from that of `across`.
+                    let turn = (azimuth as f64 + 0.5) / (2.0 * AZIMUTHS as f64);
+                    sum += self.draw(normal, view, [(polar as f64 + 0.5) / POLARS as f64, turn]).map_or(0.0, |drawn| drawn.1);
+                }
+            }
+            sum / (POLARS * AZIMUTHS) as f64
+        };
+        (0..VIEWS).map(|k| mean((k as f64 / (VIEWS - 1) as f64).max(1e-6))).collect()
+    }
+}
+
+/// A table of [`Interface::surrounded`] at a cosine.
+pub(super) fn at(table: &[f64], cosine: f64) -> f64 {
+    let place = cosine.clamp(0.0, 1.0) * (table.len() - 1) as f64;
+    let before = (place as usize).min(table.len() - 2);
+    let part = place - before as f64;
+    (1.0 - part) * table[before] + part * table[before + 1]
+}
+
+impl Spread {
+    /// Cosine and sine of a polar angle, with its density per solid angle.
+    fn draw(self, number: f64) -> (f64, f64, f64) {
+        match self {
+            Self::Gaussian { rate } => {
+                // 1 - exp(-rate (pi/2)^2), also where the lobe is wider than the hemisphere.
+                let all = -(-rate * FRAC_PI_2 * FRAC_PI_2).exp_m1();
+                let phi = (-(-number * all).ln_1p() / rate).sqrt().min(FRAC_PI_2);
+                let (sin, cos) = phi.sin_cos();
+                let over_sine = if phi < 1e-8 { 1.0 } else { phi / sin };
+                (cos, sin, rate * over_sine * (-rate * phi * phi).exp() / (PI * all))
+            }
+            Self::Beckmann { width } => {
+                let square = -width * width * (-number).ln_1p();
+                let cos2 = 1.0 / (1.0 + square);
+                let density = (-square / (width * width)).exp() / (PI * width * width * cos2 * cos2.sqrt());
+                (cos2.sqrt(), (square * cos2).sqrt(), density)
+            }
+            Self::TrowbridgeReitz { width } => {
+                let square = width * width * number / (1.0 - number);
+                let cos2 = 1.0 / (1.0 + square);
+                let (cos, sin2) = (cos2.sqrt(), square * cos2);
+                let under = sin2 + width * width * cos2;
+                (cos, sin2.sqrt(), width * width * cos / (PI * under * under))
+            }
+        }
+    }
+}

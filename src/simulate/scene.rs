@@ -1,0 +1,169 @@
+//! A scene, ready to be drawn.
+
+use super::camera::Camera;
+use super::grid::Grid;
+use super::material::{Material, NoMaterial};
+use super::shape::{Meeting, Ray, Shape, Start};
+use super::source::Source;
+use super::vector::{Vector, along, dot, scaled};
+use crate::donaldson::Observer;
+
+/// Most bodies, materials or lights.
+pub const MOST: usize = 1000;
+
+/// A body.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Body {
+    /// What the scene calls it.
+    pub name: String,
+    /// Its form.
+    pub shape: Shape,
+    /// Its material, by number.
+    pub material: usize,
+}
+
+/// How often light may go from body to body.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize, schemars::JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Bounces {
+    /// As often as it does; paths end at random, and those that stay count for those that ended.
+    All,
+    /// At most so often.
+    #[serde(untagged)]
+    Most(u32),
+}
+
+/// All that is drawn, and how.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Scene {
+    /// Bodies.
+    pub bodies: Vec<Body>,
+    /// Materials.
+    pub materials: Vec<Material>,
+    /// Lights.
+    pub sources: Vec<Source>,
+    /// The camera.
+    pub camera: Camera,
+    /// Pixels in a row and rows.
+    pub size: (usize, usize),
+    /// Wavelengths.
+    pub grid: Grid,
+    /// Observer.
+    pub observer: Observer,
+    /// Samples of each pixel for what has no closed form.
+    pub samples: u32,
+    /// Bounces.
+    pub bounces: Bounces,
+    /// Where random numbers begin.
+    pub seed: u64,
+}
+
+/// What cannot be drawn.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum NotDrawn {
+    /// A material.
+    #[error(transparent)]
+    Material(#[from] NoMaterial),
+    /// None of the lights reaches the eye.
+    #[error("the lights of the scene have a Y of {0}; expected one above 0 between 360 and 780 nm")]
+    Dark(f64),
+    /// Too many.
+    #[error("{count} {what}; expected 1 to {MOST}")]
+    Count {
+        /// Of what.
+        what: &'static str,
+        /// How many.
+        count: usize,
+    },
+    /// Energy from nowhere.
+    #[error(
+        "material `{material}` sends back up to {albedo:.4} of {what}: it may be shown, but light may not bounce from it; expected at \
+         most 1, or `bounces = 0`"
+    )]
+    Brighter {
+        /// The material.
+        material: String,
+        /// What it sends back of what falls in.
+        albedo: f64,
+        /// Of what.
+        what: &'static str,
+    },
+}
+
+/// A place on a body that is looked at.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Spot {
+    pub(super) place: Vector,
+    /// On the side that it is looked at from.
+    pub(super) normal: Vector,
+    pub(super) start: Start,
+    pub(super) material: usize,
+}
+
+impl Scene {
+    /// The first body on a ray.
+    #[inline]
+    pub(super) fn spot(&self, ray: &Ray) -> Option<Spot> {
+        let mut nearest: Option<(Meeting, usize)> = None;
+        for (body, one) in self.bodies.iter().enumerate() {
+            let limit = nearest.as_ref().map_or(f64::INFINITY, |(meeting, _)| meeting.distance);
+            let own = ray.start.as_ref().filter(|start| start.body == body);
+            if let Some(meeting) = one.shape.meet(ray, own, limit) {
+                nearest = Some((meeting, body));
+            }
+        }
+        let (meeting, body) = nearest?;
+        let place = along(ray.from, ray.towards, meeting.distance);
+        let is_outside = dot(meeting.outward, ray.towards) <= 0.0;
+        Some(Spot {
+            place,
+            normal: if is_outside { meeting.outward } else { scaled(meeting.outward, -1.0) },
+            start: Start { body, part: meeting.part, outward: meeting.outward },
+            material: self.bodies[body].material,
+        })
+    }
+
+    /// True where a body stands between a spot and what is so far away.
+    #[inline]
+    pub(super) fn is_hidden(&self, spot: &Spot, towards: Vector, distance: f64) -> bool {
+        let ray = Ray { from: spot.place, towards, start: Some(spot.start) };
+        // What touches the source itself does not hide it.
+        let limit = distance * (1.0 - 1e-12);
+        self.bodies.iter().enumerate().any(|(body, one)| {
+            let own = ray.start.as_ref().filter(|start| start.body == body);
+            one.shape.meet(&ray, own, limit).is_some()
+        })
+    }
+
+    /// The colour of a perfect diffuser that faces each light, all together, by these weights: what counts as white.
+    pub(super) fn white(&self, grid: &Grid) -> [f64; 3] {
+        let weights = grid.weights(self.observer);
+        let mut white = [0.0; 3];
+        for source in &self.sources {
+            for (white, weights) in white.iter_mut().zip(&weights) {
+                *white += weights.iter().zip(grid.spectrum(&source.light)).map(|(weight, e)| weight * e).sum::<f64>();
+            }
+        }
+        white
+    }
+
+    /// Looks whether it can be drawn.
+    ///
+    /// # Errors
+    /// [`NotDrawn`].
+    pub fn check(&self) -> Result<(), NotDrawn> {
+        let counts =
+            [("bodies", self.bodies.len()), ("materials", self.materials.len()), ("lights", self.sources.len())];
+        if let Some((what, count)) = counts.into_iter().find(|(_, count)| !(1..=MOST).contains(count)) {
+            return Err(NotDrawn::Count { what, count });
+        }
+        for material in &self.materials {
+            material.check()?;
+        }
+        let white = self.white(&self.grid)[1];
+        if !(white > 0.0 && white.is_finite()) {
+            return Err(NotDrawn::Dark(white));
+        }
+        Ok(())
+    }
+}
