@@ -33,14 +33,16 @@ done
 quietly "$bbrf" donaldson estimate \
     --under "$lamps/incandescent/lamp.csv=$lamps/incandescent/scan.bbrf#scan" \
     --under "$lamps/artificial-sun/lamp.csv=$lamps/artificial-sun/scan.bbrf#scan" \
-    --json -o "$dir/lumi-yellow.bbrf" >"$dir/estimate.json"
+    --id lumi-yellow --json -o "$dir/lumi-yellow.bbrf" >"$dir/estimate.json"
 quietly "$bbrf" report "$dir/lumi-yellow.bbrf" --figures "$dir/figures" >/dev/null
 
 echo 'Every file is valid'
 quietly "$bbrf" validate "$dir"/*/*/fitted.bbrf "$dir/lumi-yellow.bbrf" >/dev/null
 
+# The scene is given beside the matrix and the lamp, which it names relative to itself.
 scene=examples/paper/sphere.toml
 if [ -f "$scene" ]; then
     echo 'Fig. 6: the sphere, painted with that matrix, under the artificial sun'
-    quietly "$bbrf" render "$scene" -o "$dir/sphere" >/dev/null
+    cp "$scene" "$dir/sphere.toml"
+    quietly "$bbrf" render "$dir/sphere.toml" -o "$dir/sphere" >/dev/null
 fi

@@ -163,8 +163,8 @@ impl Sheet<'_> {
 
     fn figure_5(&mut self, found: &Compared) -> Result<(), Box<dyn Error>> {
         self.heading("Fig. 5: the matrix of Lumi Yellow from two lamps");
-        self.show("figures", "estimate-bispectral-surface.png", "fig5-surface", "Estimated matrix, as a surface")?;
-        self.show("figures", "estimate-bispectral-map.png", "fig5-map", "Estimated matrix, as a map")?;
+        self.show("figures", "lumi-yellow-bispectral-surface.png", "fig5-surface", "Estimated matrix, as a surface")?;
+        self.show("figures", "lumi-yellow-bispectral-map.png", "fig5-map", "Estimated matrix, as a map")?;
         self.say(&format!(
             "\n**The paper** estimates the Donaldson matrix of a paint, Lumi Yellow, from an incandescent lamp and an artificial sun, and \
              takes reflectance and luminescence from it.\n\n\
