@@ -5,6 +5,8 @@
 
 #[path = "../examples/paper/directions.rs"]
 mod directions;
+#[path = "../examples/paper/experiments.rs"]
+mod experiments;
 #[path = "../examples/paper/fitted.rs"]
 mod fitted;
 #[path = "../examples/paper/lamps.rs"]
@@ -17,8 +19,6 @@ mod page;
 mod picture;
 #[path = "../testdata/simulated_scan/scan/mod.rs"]
 mod scan;
-#[path = "../examples/paper/sessions.rs"]
-mod sessions;
 #[path = "../examples/paper/sheet.rs"]
 mod sheet;
 #[path = "../examples/paper/yellow_paint.rs"]
@@ -30,8 +30,8 @@ use std::process::Command;
 use std::sync::LazyLock;
 
 use directions::Spectra;
+use experiments::{UNDER_BLACK_LIGHT, UNDER_WHITE_LIGHT};
 use fitted::{Fitted, read_all};
-use sessions::{UNDER_BLACK_LIGHT, UNDER_WHITE_LIGHT};
 use tempfile::TempDir;
 
 /// The objects that the paper shows in its figures.
@@ -41,7 +41,7 @@ const OBJECTS: [&str; 4] =
 /// Raw records of these objects, and what the commands made of them.
 static WORKED: LazyLock<TempDir> = LazyLock::new(|| {
     let folder = tempfile::tempdir().unwrap();
-    sessions::simulate(folder.path(), &sessions::of(|name| OBJECTS.contains(&name))).unwrap();
+    experiments::simulate(folder.path(), &experiments::of(|name| OBJECTS.contains(&name))).unwrap();
     let script = concat!(env!("CARGO_MANIFEST_DIR"), "/scripts/paper.sh");
     let run = Command::new("bash").arg(script).arg(env!("CARGO_BIN_EXE_bbrf")).arg(folder.path()).output().unwrap();
     assert!(run.status.success(), "{}", String::from_utf8_lossy(&run.stderr));

@@ -4,6 +4,7 @@
 //! `paper page DIR DOCS` writes the page from what they printed. `make paper` does all three.
 
 mod directions;
+mod experiments;
 mod fitted;
 mod lamps;
 mod matrix;
@@ -11,7 +12,6 @@ mod page;
 mod picture;
 #[path = "../../testdata/simulated_scan/scan/mod.rs"]
 mod scan;
-mod sessions;
 mod sheet;
 mod yellow_paint;
 
@@ -40,7 +40,7 @@ enum Command {
 
 fn main() -> ExitCode {
     let done: Result<(), Box<dyn Error>> = match Command::parse() {
-        Command::Simulate { folder } => sessions::simulate(&folder, &sessions::of(|_| true)).map_err(Into::into),
+        Command::Simulate { folder } => experiments::simulate(&folder, &experiments::of(|_| true)).map_err(Into::into),
         Command::Page { folder, docs } => page::write(&folder, &docs),
     };
     match done {

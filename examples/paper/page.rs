@@ -5,10 +5,10 @@ use std::fs;
 use std::path::Path;
 
 use crate::directions::{Brightest, Spectra};
+use crate::experiments::{UNDER_BLACK_LIGHT, UNDER_WHITE_LIGHT};
 use crate::fitted::{Fitted, read_all};
 use crate::matrix::{Compared, compare};
 use crate::picture::all;
-use crate::sessions::{UNDER_BLACK_LIGHT, UNDER_WHITE_LIGHT};
 use crate::sheet::{Sheet, counted, covered, percent, range, with_uncertainty};
 
 /// The objects that the paper shows.
@@ -110,8 +110,8 @@ impl Sheet<'_> {
         self.say(&format!(
             "**The paper** finds a cosine of the angle of incidence approximately, yet not sufficiently, and no dependence on the \
              angle of viewing.\n\n\
-             **Here** the white was given a weak interface, too. The average over viewing departs from a cosine by {}, which is the \
-             paper's \"not sufficient\". The average over incidence departs from a constant by {}: beyond 50 degrees the interface \
+             **Here** the white was given a weak interface, too. The average over viewing departs from a cosine by {}, so a cosine is \
+             not sufficient here either. The average over incidence departs from a constant by {}: towards grazing views the interface \
              is seen, which the paper does not find. What is left when the fit has told the two apart is Lambertian: albedo {:.4} ± {:.4} \
              for {:.4} put in, and a reduced chi-square of {:.2}.",
             percent(white.from_cosine),

@@ -18,45 +18,45 @@ const TWO_LAMPS: &str = "two-lamps";
 
 /// One object under one lamp.
 #[derive(Debug)]
-pub(crate) struct Session {
+pub(crate) struct Experiment {
     folder: String,
     object: &'static Object,
     setup: Setup<'static>,
 }
 
 /// What the paper measured, of the objects whose names are `wanted`, and each of them under visible light; and the paint.
-pub(crate) fn of(wanted: impl Fn(&str) -> bool) -> Vec<Session> {
-    let mut sessions = Vec::new();
+pub(crate) fn of(wanted: impl Fn(&str) -> bool) -> Vec<Experiment> {
+    let mut experiments = Vec::new();
     for object in OBJECTS.iter().filter(|object| wanted(object.name)) {
         if object.yield_at_centre > 0.0 {
             // Below the black light the white plate is beneath the floor of the instrument: there is nothing to divide by.
             let setup = Setup { with_white: false, ..Setup::whole(&BLACK_LIGHT) };
-            sessions.push(Session::new(UNDER_BLACK_LIGHT, object.name, object, setup));
+            experiments.push(Experiment::new(UNDER_BLACK_LIGHT, object.name, object, setup));
         }
-        sessions.push(Session::new(UNDER_WHITE_LIGHT, object.name, object, Setup::whole(&DIODES)));
+        experiments.push(Experiment::new(UNDER_WHITE_LIGHT, object.name, object, Setup::whole(&DIODES)));
     }
     for (name, lamp) in [("incandescent", &INCANDESCENT), ("artificial-sun", &ARTIFICIAL_SUN)] {
         let setup = Setup { geometries: vec![(0, 45)], ..Setup::whole(lamp) };
-        sessions.push(Session::new(TWO_LAMPS, name, &YELLOW_PAINT, setup));
+        experiments.push(Experiment::new(TWO_LAMPS, name, &YELLOW_PAINT, setup));
     }
-    sessions
+    experiments
 }
 
-/// Writes the raw records of the sessions, and the spectrum of the lamp, which another instrument is taken to have measured.
+/// Writes the raw records of the experiments, and the spectrum of the lamp, which another instrument is taken to have measured.
 ///
 /// # Errors
 /// What the file system says.
-pub(crate) fn simulate(folder: &Path, sessions: &[Session]) -> io::Result<()> {
-    for (number, session) in sessions.iter().enumerate() {
-        let folder = folder.join(&session.folder);
+pub(crate) fn simulate(folder: &Path, experiments: &[Experiment]) -> io::Result<()> {
+    for (number, experiment) in experiments.iter().enumerate() {
+        let folder = folder.join(&experiment.folder);
         // From 1000 on, so that no noise is that of the scan in testdata.
-        Scan::simulate(&session.setup, 1000 + number, session.object).write(&folder)?;
-        fs::write(folder.join("lamp.csv"), spectrum(session.setup.lamp))?;
+        Scan::simulate(&experiment.setup, 1000 + number, experiment.object).write(&folder)?;
+        fs::write(folder.join("lamp.csv"), spectrum(experiment.setup.lamp))?;
     }
     Ok(())
 }
 
-impl Session {
+impl Experiment {
     fn new(group: &str, name: &str, object: &'static Object, setup: Setup<'static>) -> Self {
         Self { folder: format!("{group}/{name}"), object, setup }
     }
