@@ -1,4 +1,4 @@
-# Two commands: `make demo` does the main job, `make test` is the whole truth. What is missing is brought into target/.
+# `make demo` does the main job, `make paper` the paper's, `make test` is the whole truth. What is missing is brought into target/.
 SHELL := /bin/bash
 .SHELLFLAGS := -euo pipefail -c
 .DEFAULT_GOAL := help
@@ -21,7 +21,7 @@ endif
 
 RELEASE := $(TARGET)/release/bbrf
 
-.PHONY: help demo test test-ecosystem lint bench soak soak-damage fuzz fuzz-check conformance clean build
+.PHONY: help demo paper test test-ecosystem lint bench soak soak-damage fuzz fuzz-check conformance clean build
 
 help: ## Say what there is to make.
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | awk -F ':.*## ' '{ printf "  make %-16s %s\n", $$1, $$2 }'
@@ -40,6 +40,13 @@ build: $(CMAKE_READY) ## Build the command, optimised.
 
 demo: build ## Import the simulated scan, fit it, validate the file, draw it.
 	bash scripts/demo.sh $(RELEASE)
+
+paper: $(CMAKE_READY) ## The paper's figures from simulated scans of its objects: target/paper, docs/paper.md.
+	$(CARGO) build --locked --bin bbrf --example paper
+	rm -rf $(TARGET)/paper
+	$(TARGET)/debug/examples/paper simulate $(TARGET)/paper
+	bash scripts/paper.sh $(TARGET)/debug/bbrf $(TARGET)/paper
+	$(TARGET)/debug/examples/paper page $(TARGET)/paper docs
 
 test: $(CMAKE_READY) $(VENV)/ready ## All tests: unit, property, golden, command line, C, other readers, doc examples.
 	$(CARGO) build --locked --package bbrf-capi

@@ -9,7 +9,9 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use scan::{OBJECTS, Scan};
+use scan::lamp::DIODES;
+use scan::objects::OBJECTS;
+use scan::{Scan, Setup};
 
 const COMMITTED: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/testdata/simulated_scan");
 
@@ -24,7 +26,7 @@ fn data(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
 
 fn simulate(name: &str, folder: &Path) {
     let (number, object) = OBJECTS.iter().enumerate().find(|(_, object)| object.name == name).unwrap();
-    Scan::simulate(number, object).write(folder).unwrap();
+    Scan::simulate(&Setup::whole(&DIODES), number, object).write(folder).unwrap();
 }
 
 #[test]

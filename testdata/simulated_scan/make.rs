@@ -10,7 +10,9 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::Parser;
-use scan::{OBJECTS, Object, Scan};
+use scan::lamp::DIODES;
+use scan::objects::{OBJECTS, Object};
+use scan::{Scan, Setup};
 
 /// Makes simulated PR-650 scans of the paper's twelve fluorescent objects and of a matte white.
 #[derive(Debug, Parser)]
@@ -35,7 +37,7 @@ fn main() -> ExitCode {
     for (number, object) in &chosen {
         let folder =
             if arguments.object == "all" { arguments.outdir.join(object.name) } else { arguments.outdir.clone() };
-        if let Err(error) = Scan::simulate(*number, object).write(&folder) {
+        if let Err(error) = Scan::simulate(&Setup::whole(&DIODES), *number, object).write(&folder) {
             eprintln!("{}: {error}", folder.display());
             return ExitCode::from(2);
         }

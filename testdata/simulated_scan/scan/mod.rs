@@ -1,16 +1,19 @@
 //! A whole scan: every geometry, the white plate before and after, the dark, the manifest and the truth.
 
 mod instrument;
-mod objects;
+pub(crate) mod lamp;
+pub(crate) mod objects;
 mod optics;
 mod random;
 mod truth;
 
+use std::ops::RangeInclusive;
 use std::path::Path;
 use std::{fs, io};
 
 use instrument::Reading;
-pub(crate) use objects::{OBJECTS, Object};
+use lamp::Lamp;
+use objects::Object;
 use optics::{Spectra, WAVELENGTHS, WHITE_FACTOR};
 use random::Random;
 
@@ -34,36 +37,65 @@ struct Record {
     reading: Reading,
 }
 
+/// How an object is looked at.
+#[derive(Debug)]
+pub(crate) struct Setup<'a> {
+    /// What shines on it.
+    pub(crate) lamp: &'a Lamp,
+    /// Signed angles of incidence and viewing, degrees, in the order of acquisition.
+    pub(crate) geometries: Vec<(i32, i32)>,
+    /// True where the white plate is read, too, so that there is something to divide by.
+    pub(crate) with_white: bool,
+}
+
+impl<'a> Setup<'a> {
+    /// All directions in the plane under a lamp, and the white plate.
+    pub(crate) fn whole(lamp: &'a Lamp) -> Self {
+        Self { lamp, geometries: geometries().collect(), with_white: true }
+    }
+}
+
 /// A simulated scan.
 #[derive(Debug)]
 pub(crate) struct Scan {
     title: &'static str,
+    lamp: &'static str,
+    with_white: bool,
     /// In the order of acquisition.
     records: Vec<Record>,
     truth: serde_json::Value,
 }
 
 impl Scan {
-    /// Simulates the scan of an object; its number chooses the noise.
-    pub(crate) fn simulate(number: usize, object: &Object) -> Self {
-        let spectra = Spectra::of(object);
-        let mut scan = Self { title: object.title, records: Vec::new(), truth: truth::truth(object, &spectra) };
-        let (white_i, _) = WHITE_GEOMETRY;
-        let white = spectra.white_radiance(f64::from(white_i));
+    /// Simulates an object as `setup` looks at it; `number` chooses the noise.
+    pub(crate) fn simulate(setup: &Setup<'_>, number: usize, object: &Object) -> Self {
+        let spectra = Spectra::of(object, setup.lamp);
+        let mut scan = Self {
+            title: object.title,
+            lamp: setup.lamp.title,
+            with_white: setup.with_white,
+            records: Vec::new(),
+            truth: truth::truth(object, &spectra),
+        };
         let dark = vec![0.0; WAVELENGTHS];
         scan.take(number, "dark_1", "dark", None, 1, &dark);
-        for repeat in 1..=WHITES {
-            scan.take(number, &format!("white_{repeat}"), "white", Some(WHITE_GEOMETRY), repeat, &white);
-        }
-        for (theta_i, theta_v) in geometries() {
+        scan.take_whites(number, 1..=WHITES, &spectra);
+        for &(theta_i, theta_v) in &setup.geometries {
             let radiance = spectra.radiance(object, f64::from(theta_i), f64::from(theta_v));
             scan.take(number, &format!("ti{theta_i}_tv{theta_v}"), "sample", Some((theta_i, theta_v)), 1, &radiance);
         }
-        for repeat in WHITES + 1..=2 * WHITES {
-            scan.take(number, &format!("white_{repeat}"), "white", Some(WHITE_GEOMETRY), repeat, &white);
-        }
+        scan.take_whites(number, WHITES + 1..=2 * WHITES, &spectra);
         scan.take(number, "dark_2", "dark", None, 2, &dark);
         scan
+    }
+
+    fn take_whites(&mut self, number: usize, repeats: RangeInclusive<usize>, spectra: &Spectra) {
+        if self.with_white {
+            let white = spectra.white_radiance(f64::from(WHITE_GEOMETRY.0));
+            for repeat in repeats {
+                self.take(number, &format!("white_{repeat}"), "white", Some(WHITE_GEOMETRY), repeat, &white);
+            }
+        }
     }
 
     fn take(
@@ -100,17 +132,21 @@ impl Scan {
              # simulated: true\n\
              # angles: signed, mirror-at-equal\n\
              # instrument: PR-650 (simulated)\n\
-             # light: 375 nm diode with a white diode (simulated)\n\
-             # part: total\n\
-             # reference: fixed-geometry({},{})\n\
-             # reference-light: same\n\
-             # certified-factor: {WHITE_FACTOR}\n\
-             # certified-relative-uncertainty: 0.005\n\
-             file,record,role,theta_i_deg,theta_v_deg,repeat,time,exposure_ms\n",
-            WHITE_GEOMETRY.0,
-            WHITE_GEOMETRY.1,
+             # light: {}\n\
+             # part: total\n",
+            self.lamp,
             title = self.title,
         );
+        if self.with_white {
+            text.push_str(&format!(
+                "# reference: fixed-geometry({},{})\n\
+                 # reference-light: same\n\
+                 # certified-factor: {WHITE_FACTOR}\n\
+                 # certified-relative-uncertainty: 0.005\n",
+                WHITE_GEOMETRY.0, WHITE_GEOMETRY.1,
+            ));
+        }
+        text.push_str("file,record,role,theta_i_deg,theta_v_deg,repeat,time,exposure_ms\n");
         for (order, record) in self.records.iter().enumerate() {
             let angles = record.angles.map_or(",".to_owned(), |(i, v)| format!("{i},{v}"));
             let (file, role, repeat) = (&record.file, record.role, record.repeat);

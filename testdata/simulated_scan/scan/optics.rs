@@ -3,7 +3,8 @@
 
 use std::f64::consts::{LN_2, PI};
 
-use super::objects::{Object, half_height_gaussian};
+use super::lamp::Lamp;
+use super::objects::Object;
 
 /// Emission wavelengths of a PR-650: 380 to 780 nm in steps of 4.
 pub(crate) const WAVELENGTHS: usize = 101;
@@ -33,9 +34,9 @@ pub(crate) struct Spectra {
 }
 
 impl Spectra {
-    /// The spectra of an object under the lamp.
-    pub(crate) fn of(object: &Object) -> Self {
-        let beam: Vec<f64> = fine().map(lamp).collect();
+    /// The spectra of an object under a lamp.
+    pub(crate) fn of(object: &Object, lamp: &Lamp) -> Self {
+        let beam: Vec<f64> = fine().map(lamp.irradiance).collect();
         let diffuse: Vec<f64> = fine().zip(&beam).map(|(nm, beam)| object.reflectance_at(nm) * beam).collect();
         Self {
             irradiance: through_slit(&beam),
@@ -62,15 +63,6 @@ impl Spectra {
 
 fn fine() -> impl Iterator<Item = f64> {
     (0..FINE_COUNT).map(|i| (FINE_FROM_NM + i) as f64)
-}
-
-/// The lamp: an ultraviolet diode at 375 nm, a blue one at 452, its phosphor, and a faint incandescent part.
-fn lamp(nm: f64) -> f64 {
-    let incandescent = 6.0e-5 * (nm / 600.0).powi(4);
-    0.024 * half_height_gaussian(nm - 375.0, 6.0)
-        + 0.020 * half_height_gaussian(nm - 452.0, 11.0)
-        + 0.014 * half_height_gaussian(nm - 565.0, 62.0)
-        + incandescent
 }
 
 /// pi times the luminescent radiance at normal incidence: the energy that the excitation band takes in, spread over
