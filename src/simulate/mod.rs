@@ -6,8 +6,11 @@
 
 pub mod convex;
 mod film;
+pub mod image;
+mod reradiate;
 mod spectral;
 mod vector;
 
 pub use film::{Film, LONGEST_SIDE, NoFilm};
+pub use reradiate::{NoProduct, reradiate};
 pub use spectral::{NoColours, Spectral};
