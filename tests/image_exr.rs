@@ -35,7 +35,7 @@ fn every_layer_comes_back_to_the_last_bit() {
         assert_eq!(found.attributes.layer_name, Some(Text::from(layer.name.as_str())));
         assert_eq!(found.channel_data.list.len(), layer.channels.len());
         for channel in &layer.channels {
-            let same = |other: &&exr::prelude::AnyChannel<_>| other.name == Text::from(channel.name.as_str());
+            let same = |other: &&exr::prelude::AnyChannel<_>| other.name.to_string() == channel.name;
             let other = found.channel_data.list.iter().find(same).unwrap();
             let exr::prelude::FlatSamples::F32(values) = &other.sample_data else { unreachable!("not f32") };
             assert!(values.iter().zip(&channel.values).all(|(a, b)| a.to_bits() == b.to_bits()), "{}", channel.name);

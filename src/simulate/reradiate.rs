@@ -42,7 +42,11 @@ where
 {
     let (excitation, emission) = matrix.dim();
     let refused = NoProduct { incident: incident.len(), out: out.len(), excitation, emission };
-    if excitation == 0 || emission == 0 || incident.len() % excitation != 0 || out.len() % emission != 0 {
+    if excitation == 0
+        || emission == 0
+        || !incident.len().is_multiple_of(excitation)
+        || !out.len().is_multiple_of(emission)
+    {
         return Err(refused);
     }
     if incident.len() / excitation != out.len() / emission {
