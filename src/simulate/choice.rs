@@ -6,14 +6,14 @@ use super::scene::Bounces;
 /// What is simulated of a scene.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Choice {
-    effects: [bool; Effect::ALL.len()],
+    pub(super) effects: [bool; Effect::ALL.len()],
     /// Whether the product of matrix and incident spectrum is made at every pixel, as every renderer of bispectral surfaces does,
     /// and not once for each light.
-    pub by_pixel: bool,
+    pub(super) by_pixel: bool,
     /// Bounces.
-    pub bounces: Bounces,
+    pub(super) bounces: Bounces,
     /// Steps of the wavelength, nm.
-    pub step_nm: f64,
+    pub(super) step_nm: f64,
 }
 
 impl Choice {
@@ -34,5 +34,38 @@ impl Choice {
     pub fn without(mut self, effect: Effect) -> Self {
         self.effects[effect as usize] = false;
         self
+    }
+
+    /// The same with the product at every pixel.
+    #[must_use]
+    pub fn by_pixel(mut self) -> Self {
+        self.by_pixel = true;
+        self
+    }
+
+    /// The same with at most so many bounces.
+    #[must_use]
+    pub fn bouncing(mut self, bounces: Bounces) -> Self {
+        self.bounces = bounces;
+        self
+    }
+
+    /// The same in other steps of the wavelength, nm.
+    #[must_use]
+    pub fn in_steps_of(mut self, step_nm: f64) -> Self {
+        self.step_nm = step_nm;
+        self
+    }
+
+    /// Bounces.
+    #[must_use]
+    pub fn bounces(&self) -> Bounces {
+        self.bounces
+    }
+
+    /// Steps of the wavelength, nm.
+    #[must_use]
+    pub fn step_nm(&self) -> f64 {
+        self.step_nm
     }
 }

@@ -93,7 +93,8 @@ pub(super) struct Prepared {
 impl Prepared {
     pub(super) fn new(scene: &Scene, step_nm: f64) -> Result<Self, NoGrid> {
         let grid = if step_nm == scene.grid.step() { scene.grid.clone() } else { scene.grid.in_steps_of(step_nm)? };
-        let white = scene.white(&grid);
+        // White is that of the scene, whatever the steps of a plan.
+        let white = scene.white(&scene.grid);
         let scale = 1.0 / white[1];
         let weights = grid.weights(scene.observer).map(|list| list.into_iter().map(|weight| weight * scale).collect());
         let materials = scene.materials.iter().map(|material| material.on(&grid)).collect();

@@ -9,7 +9,7 @@ use super::vector::{Vector, along, dot, scaled};
 use crate::donaldson::Observer;
 
 /// Most bodies, materials or lights.
-pub const MOST: usize = 1000;
+pub(super) const MOST: usize = 1000;
 
 /// A body.
 #[derive(Debug, Clone, PartialEq)]

@@ -9,7 +9,7 @@ use super::interface::{self, Interface};
 use super::material::OnGrid;
 use super::random::Stream;
 use super::scene::{Bounces, Scene, Spot};
-use super::shape::Ray;
+use super::shape::{Ray, Shape};
 use super::transport::{Act, FILM, Spectra, Way, Ways};
 use super::vector::{Vector, across, along, dot, scaled};
 
@@ -116,8 +116,9 @@ impl<'a> Tracer<'a> {
         let Some(spot) = self.scene.spot(&Ray { from, towards, start: None }) else { return };
         let view = scaled(towards, -1.0);
         self.direct(&spot, view, ways, out);
-        // What is looked at from within is never open.
-        let is_open = self.is_open && dot(spot.start.outward, towards) <= 0.0;
+        // What is looked at from within is never open; a plane has no inside.
+        let is_flat = matches!(self.scene.bodies[spot.start.body].shape, Shape::Plane(_));
+        let is_open = self.is_open && (is_flat || dot(spot.start.outward, towards) <= 0.0);
         let surrounds =
             self.choice.has(Effect::Surround) && self.scene.sources.iter().any(super::source::Source::is_surround);
         if surrounds && is_open {

@@ -38,7 +38,8 @@ pub fn glowing(name: &str, reflectance: f64, emission: f64, strength: f64) -> Ma
     let bell = |nm: f64, centre: f64, width: f64| (-((nm - centre) / width).powi(2)).exp();
     let density = Array2::from_shape_fn((25, 25), |(i, j)| {
         let emitted = bell(axis[j], emission, 40.0) / (40.0 * std::f64::consts::PI.sqrt());
-        if axis[j] > axis[i] { strength * bell(axis[i], emission - 90.0, 60.0) * emitted } else { 0.0 }
+        let is_excited = axis[j] > axis[i] && axis[i] < emission + 20.0;
+        if is_excited { strength * bell(axis[i], emission - 90.0, 60.0) * emitted } else { 0.0 }
     });
     let elastic = axis.iter().map(|nm| reflectance * (0.3 + 0.7 * bell(*nm, emission + 60.0, 150.0))).collect();
     let surface = Reradiation::from_parts(axis.clone(), axis, elastic, density).unwrap();

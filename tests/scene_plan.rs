@@ -1,0 +1,335 @@
+//! A plan leaves out what nobody can see, and says how much that is.
+#![allow(clippy::unwrap_used, missing_docs)]
+
+#[path = "common/scans.rs"]
+mod scans;
+#[path = "common/scenes.rs"]
+mod scenes;
+
+use bbrf::simulate::{
+    Ball, Body, Bounces, Camera, Cuboid, Effect, Kept, Layer, Mesh, Picture, Place, Plane, Projection, Rectangle,
+    Scene, Shape, Watch, plan,
+};
+use scans::Random;
+use scenes::*;
+
+/// How many random scenes: `BBRF_SCENES` for a long run.
+fn count(usual: usize) -> usize {
+    std::env::var("BBRF_SCENES").ok().and_then(|text| text.parse().ok()).unwrap_or(usual)
+}
+
+fn unit(v: [f64; 3]) -> [f64; 3] {
+    let length = v.iter().map(|x| x * x).sum::<f64>().sqrt();
+    v.map(|x| x / length)
+}
+
+fn direction(random: &mut Random) -> [f64; 3] {
+    unit([random.normal(), random.normal(), random.normal()])
+}
+
+fn place(random: &mut Random, size: f64) -> [f64; 3] {
+    [0; 3].map(|_| random.between(-size, size))
+}
+
+fn body(random: &mut Random, number: usize, materials: usize) -> Body {
+    // Side by side, more or less.
+    let aside = place(random, 0.4);
+    let centre = [aside[0] + 1.9 * (number as f64 - 1.0), aside[1], aside[2]];
+    let axes = || {
+        let normal = [0.0, 0.6, 0.8];
+        [[1.0, 0.0, 0.0], [0.0, 0.8, -0.6], normal]
+    };
+    let shape = match (random.uniform() * 6.0) as usize {
+        0 | 1 => Shape::Sphere(Ball { centre, radius: random.between(0.2, 1.0) }),
+        2 => Shape::Plane(Plane {
+            point: [0.0, 0.0, random.between(-2.0, -1.0)],
+            normal: [0.0, 0.0, 1.0],
+            rectangle: None,
+        }),
+        3 => {
+            let [a, b, normal] = axes();
+            Shape::Plane(Plane {
+                point: centre,
+                normal,
+                rectangle: Some(Rectangle { axes: [a, b], half: [random.between(0.2, 1.5), 0.7] }),
+            })
+        }
+        4 => {
+            Shape::Box(Cuboid { centre, axes: axes(), half: [random.between(0.1, 0.8), random.between(0.1, 0.8), 0.4] })
+        }
+        _ => {
+            let corners: Vec<[f64; 3]> =
+                (0..6).map(|_| [0, 1, 2].map(|k| centre[k] + random.between(-0.8, 0.8))).collect();
+            Shape::Mesh(Mesh::new(&corners, &[[0, 1, 2], [2, 3, 4], [1, 4, 5], [0, 3, 5]]).unwrap())
+        }
+    };
+    Body { name: format!("body {number}"), shape, material: (random.uniform() * materials as f64) as usize % materials }
+}
+
+fn random_scene(random: &mut Random) -> Scene {
+    let mut materials = vec![
+        grey(random.between(0.0, 0.9)),
+        glowing("one", random.between(0.0, 0.5), random.between(450.0, 650.0), random.between(0.0, 0.4)),
+    ];
+    if random.uniform() < 0.3 {
+        materials[0].specular = Some(gloss(random.log_between(0.01, 0.3), random.between(0.05, 0.5)));
+    }
+    if random.uniform() < 0.3 {
+        materials.remove((random.uniform() * 2.0) as usize % 2);
+    }
+    let bodies = (0..1 + (random.uniform() * 3.0) as usize).map(|k| body(random, k, materials.len())).collect();
+    let mut sources: Vec<_> = (0..1 + (random.uniform() * 2.0) as usize)
+        .map(|k| {
+            let values = match (random.uniform() * 3.0) as usize {
+                0 => [1.0, 1.0, 1.0],
+                1 => [0.0, 0.0, 1.0],
+                _ => [random.uniform(), random.uniform(), 0.1],
+            };
+            let from = direction(random);
+            let place = if random.uniform() < 0.6 {
+                Place::Directional(from)
+            } else {
+                Place::Point(from.map(|x| x * random.between(3.0, 8.0)), 4.0)
+            };
+            lamp(&format!("light {k}"), place, values)
+        })
+        .collect();
+    if random.uniform() < 0.3 {
+        sources.push(lamp("all", Place::Surround, [0.3, random.uniform(), 0.2]));
+    }
+    let mut scene = scene(bodies, materials, sources);
+    let up = [0.1, 0.2, 1.0];
+    let from = direction(random).map(|x| 7.0 * x);
+    let projection = if random.uniform() < 0.6 {
+        Projection::Orthographic { width: 5.0 }
+    } else {
+        Projection::Perspective { width_deg: 40.0 }
+    };
+    scene.camera = Camera::new(from, place(random, 0.3), up, projection).unwrap();
+    scene.size = (12, 10);
+    scene.samples = 2;
+    scene.seed = (random.uniform() * 1e6) as u64;
+    scene.bounces = if random.uniform() < 0.5 { Bounces::All } else { Bounces::Most((random.uniform() * 4.0) as u32) };
+    scene
+}
+
+/// Units in the last place.
+fn units(a: f32, b: f32) -> i64 {
+    let ordered = |x: f32| {
+        let bits = i64::from(x.to_bits() & 0x7fff_ffff);
+        if x.is_sign_negative() { -bits } else { bits }
+    };
+    (ordered(a) - ordered(b)).abs()
+}
+
+fn numbers(picture: &Picture) -> impl Iterator<Item = f32> {
+    picture.layers.iter().flat_map(|(_, planes)| planes.iter().flatten().copied())
+}
+
+#[test]
+fn with_no_tolerance_the_picture_is_that_of_the_full_simulation() {
+    let mut random = Random::new(11);
+    let (mut skipped, mut drawn) = (0, 0);
+    for case in 0..count(1000) {
+        let mut scene = random_scene(&mut random);
+        scene.size = (8, 6);
+        scene.samples = 1;
+        let everything = everything(&scene);
+        let Ok(full) = Picture::draw(&scene, &everything, Kept::Colour, Layer::ALL, &Watch::default()) else {
+            continue;
+        };
+        let plan = plan(&scene, 0.0).unwrap();
+        assert!(plan.bound.is_zero(), "case {case}: {}", plan.text());
+        let planned = draw(&scene, &plan.choice);
+        drawn += 1;
+        skipped += plan.effects.iter().filter(|one| !one.simulate).count();
+        for (a, b) in numbers(&planned).zip(numbers(&full)) {
+            assert!(units(a, b) <= 1, "case {case}: {a:e}, in full {b:e}: {}", plan.text());
+        }
+        // Where nothing is summed in another order, not a bit changes.
+        let in_order = plan.choice.by_pixel();
+        let same = draw(&scene, &in_order);
+        assert!(
+            numbers(&same).zip(numbers(&full)).all(|(a, b)| a.to_bits() == b.to_bits()),
+            "case {case}: {}",
+            plan.text()
+        );
+    }
+    assert!(drawn > 9 * count(1000) / 10 && skipped > drawn, "{skipped} effects skipped in {drawn} scenes");
+}
+
+fn lab(xyz: [f64; 3], white: [f64; 3]) -> [f64; 3] {
+    let f = |t: f64| if t > 216.0 / 24_389.0 { t.cbrt() } else { 841.0 / 108.0 * t + 4.0 / 29.0 };
+    let [x, y, z] = [0, 1, 2].map(|c| f(xyz[c] / white[c]));
+    [116.0 * y - 16.0, 500.0 * (x - y), 200.0 * (y - z)]
+}
+
+/// Largest CIELAB distance and largest difference of Y between two pictures.
+fn apart(one: &Picture, other: &Picture) -> (f64, f64) {
+    let (a, b) = (one.layer(Layer::Total).unwrap(), other.layer(Layer::Total).unwrap());
+    let mut most = (0.0_f64, 0.0_f64);
+    for k in 0..a[0].len() {
+        let at = |planes: &[Vec<f32>]| [0, 1, 2].map(|c| f64::from(planes[c][k]));
+        let (x, y) = (lab(at(a), one.white), lab(at(b), one.white));
+        most.0 = most.0.max((0..3).map(|c| (x[c] - y[c]).powi(2)).sum::<f64>().sqrt());
+        most.1 = most.1.max((at(a)[1] - at(b)[1]).abs());
+    }
+    most
+}
+
+/// Each effect alone, wherever it is no matter of chance: the difference that leaving it out makes is never above the bound.
+#[test]
+fn no_pixel_changes_by_more_than_the_bound_and_the_bound_is_not_idle() {
+    let mut random = Random::new(12);
+    let mut ratios: Vec<(Effect, f64)> = Vec::new();
+    for case in 0..count(400) {
+        let mut scene = random_scene(&mut random);
+        // Larger, so that the worst place is not between two pixels.
+        scene.size = (60, 50);
+        scene.bounces = Bounces::Most(0);
+        scene
+            .sources
+            .retain(|source| !source.is_surround() || (scene.bodies.len() == 1 && scene.bodies[0].shape.is_convex()));
+        let planned = plan(&scene, 0.0).unwrap();
+        let full = draw(&scene, &planned.choice);
+        for decision in &planned.effects {
+            let left = draw(&scene, &planned.choice.without(decision.effect));
+            let (delta_e, luminance) = apart(&full, &left);
+            let slack = 1e-4;
+            assert!(delta_e <= decision.bound.delta_e + slack, "case {case}: {delta_e} and {decision:?} of {scene:?}");
+            assert!(
+                luminance <= decision.bound.luminance * (1.0 + 1e-6) + 1e-9,
+                "case {case}: {luminance} and {decision:?}"
+            );
+            if decision.simulate && delta_e > 0.01 {
+                ratios.push((decision.effect, decision.bound.delta_e / delta_e));
+            }
+        }
+    }
+    for effect in [Effect::Luminescence, Effect::Diffuse, Effect::Specular, Effect::Shadow, Effect::Surround] {
+        let mut own: Vec<f64> = ratios.iter().filter(|(one, _)| *one == effect).map(|(_, ratio)| *ratio).collect();
+        own.sort_by(f64::total_cmp);
+        println!("{effect}: bound over difference, median {:.2} of {}", own[own.len() / 2], own.len());
+        assert!(own.len() > 5 && own[own.len() / 2] < 10.0, "{effect}: {own:?}");
+    }
+}
+
+/// Light from body to body: the mean over many samples, less their noise, is below the bound.
+#[test]
+fn interreflection_is_bounded_to_any_number_of_bounces() {
+    let mut random = Random::new(13);
+    let (mut ratios, mut bounded) = (Vec::new(), 0);
+    for case in 0..count(60) {
+        let mut scene = random_scene(&mut random);
+        scene.sources.retain(|source| !source.is_surround());
+        if scene.bounces == Bounces::Most(0) {
+            scene.bounces = Bounces::All;
+        }
+        scene.samples = 400;
+        let Ok(full) = Picture::draw(&scene, &everything(&scene), Kept::Colour, Layer::ALL, &Watch::default()) else {
+            continue;
+        };
+        for kept in [0, 1] {
+            if scene.bounces == Bounces::Most(1) && kept == 1 {
+                continue;
+            }
+            let fewer = everything(&scene).bouncing(Bounces::Most(kept));
+            let fewer = if kept == 0 { fewer.without(Effect::Interreflection) } else { fewer };
+            let bound = bbrf::simulate::bound(&scene, &fewer).unwrap();
+            if !bound.delta_e.is_finite() {
+                continue;
+            }
+            bounded += 1;
+            let less = draw(&scene, &fewer);
+            let (mut most, mut most_e) = (0.0_f64, 0.0_f64);
+            let (a, b) = (full.layer(Layer::Total).unwrap(), less.layer(Layer::Total).unwrap());
+            for k in 0..a[1].len() {
+                let noise = full.noise.get(k).copied().map_or(0.0, f64::from);
+                let difference = f64::from(a[1][k]) - f64::from(b[1][k]) - 5.0 * noise;
+                assert!(difference <= bound.luminance + 1e-7, "case {case}: {difference} +- {noise} beyond {bound:?}");
+                most = most.max(difference + 5.0 * noise);
+            }
+            most_e = most_e.max(apart(&full, &less).0);
+            if most_e > 0.05 {
+                ratios.push(bound.delta_e / most_e);
+            }
+        }
+    }
+    ratios.sort_by(f64::total_cmp);
+    println!("interreflection: bound over difference, median {:.2} of {}", ratios[ratios.len() / 2], ratios.len());
+    assert!(bounded > 20, "{bounded} scenes had a bound");
+}
+
+#[test]
+fn with_a_tolerance_the_plan_keeps_it_and_does_less() {
+    let mut random = Random::new(14);
+    let (mut fewer, mut cases) = (0, 0);
+    for case in 0..count(120) {
+        let mut scene = random_scene(&mut random);
+        scene.sources.retain(|source| !source.is_surround());
+        scene.bounces = Bounces::Most(0);
+        let exact = plan(&scene, 0.0).unwrap();
+        let full = draw(&scene, &exact.choice);
+        for tolerance in [0.5, 5.0] {
+            let rough = plan(&scene, tolerance).unwrap();
+            assert!(rough.bound.delta_e <= tolerance, "case {case}: {}", rough.text());
+            let (delta_e, _) = apart(&full, &draw(&scene, &rough.choice));
+            assert!(delta_e <= rough.bound.delta_e + 1e-4, "case {case}: {delta_e}: {}", rough.text());
+            cases += 1;
+            fewer += usize::from(rough.choice != exact.choice);
+        }
+    }
+    assert!(fewer > cases / 4, "{fewer} of {cases} plans do less");
+}
+
+#[test]
+fn every_skip_has_its_reason() {
+    let sun = Place::Directional(unit([0.2, -1.0, 0.5]));
+    let text = |scene: &Scene, effect: Effect| {
+        let plan = plan(scene, 0.0).unwrap();
+        let one = plan.effects.iter().find(|one| one.effect == effect).unwrap().clone();
+        if one.simulate { "simulated".to_owned() } else { one.reason }
+    };
+    let single = scene(vec![ball([0.0; 3], 1.0, 0)], vec![glowing("one", 0.3, 560.0, 0.3)], vec![white("sun", sun)]);
+    assert!(text(&single, Effect::Shadow).contains("one convex body"));
+    assert!(text(&single, Effect::Interreflection).contains("does not see itself"));
+    assert!(text(&single, Effect::Specular).contains("no material has a specular term"));
+    assert!(text(&single, Effect::Surround).contains("no light comes from all around"));
+    assert_eq!(text(&single, Effect::Luminescence), "simulated");
+    let mut red = single.clone();
+    red.sources = vec![lamp("red", sun, [0.0, 0.0, 1.0])];
+    red.sources[0].light = bbrf::donaldson::Light::new(
+        "red",
+        bbrf::quantity::QuantityKind::SpectralIrradiance,
+        vec![700.0, 780.0],
+        vec![1.0, 1.0],
+        None,
+    )
+    .unwrap();
+    assert!(text(&red, Effect::Luminescence).contains("excited"), "{}", plan(&red, 0.0).unwrap().text());
+    let mut apart = single.clone();
+    apart.bodies.push(ball([3.0, 0.0, 0.0], 1.0, 0));
+    apart.sources[0].place = Place::Directional([0.0, 0.0, 1.0]);
+    assert!(text(&apart, Effect::Shadow).contains("no body stands between"));
+    let mut glossy = single.clone();
+    glossy.materials[0].specular = Some(gloss(1.0, 0.01));
+    glossy.bodies[0].shape = Shape::Plane(Plane {
+        point: [0.0; 3],
+        normal: [0.0, 0.0, 1.0],
+        rectangle: Some(Rectangle { axes: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], half: [1.0, 1.0] }),
+    });
+    assert!(text(&glossy, Effect::Specular).contains("nowhere in view"), "{}", plan(&glossy, 0.0).unwrap().text());
+}
+
+#[test]
+fn what_sends_back_more_than_falls_in_is_shown_and_does_not_bounce() {
+    let mut scene = scene(
+        vec![ball([0.0; 3], 1.0, 0), floor(-1.0, 0)],
+        vec![grey(1.2)],
+        vec![white("sun", Place::Directional([0.0, 0.0, 1.0]))],
+    );
+    let refused = Picture::draw(&scene, &everything(&scene), Kept::Colour, Layer::ALL, &Watch::default()).unwrap_err();
+    assert!(refused.to_string().contains("material `grey 1.2` sends back up to 1.2"), "{refused}");
+    scene.bounces = Bounces::Most(0);
+    draw(&scene, &everything(&scene));
+}
