@@ -11,6 +11,7 @@ mod opened;
 mod output;
 mod overwrite;
 mod progress;
+mod references;
 
 use std::process::ExitCode;
 

@@ -3,6 +3,8 @@
 use super::chunk_table::Chunks;
 #[cfg(feature = "write")]
 use super::digest::Digests;
+#[cfg(feature = "write")]
+use super::storing::Storing;
 use super::tree::Group;
 #[cfg(feature = "write")]
 use super::write::{Plan, chunks::Source, with_image};
@@ -28,7 +30,8 @@ impl Differing {
     #[cfg(feature = "write")]
     pub(super) fn of(bytes: &[u8], chunks: &Chunks, tree: &Group, canonical: &Group) -> Option<Self> {
         let digests = Digests::stated(tree)?;
-        let plan = Plan { source: Source::File(bytes, &chunks.0), digests: Some(&digests) };
+        let plan =
+            Plan { source: Source::File(bytes, &chunks.0), digests: Some(&digests), storing: Storing::default() };
         with_image(canonical, plan, |image| Self::between(image, bytes)).ok().flatten()
     }
 

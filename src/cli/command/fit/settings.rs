@@ -32,6 +32,11 @@ pub(super) fn loss(text: &str) -> Result<Loss, String> {
         .ok_or_else(|| "expected `squares`, `huber` or `tukey`".to_owned())
 }
 
+pub(super) fn tolerance(text: &str) -> Result<f64, String> {
+    let number = text.parse::<f64>().ok().filter(|x| x.is_finite() && *x > 0.0);
+    number.ok_or_else(|| "expected a number above 0, as 1e-8".to_owned())
+}
+
 pub(super) fn bounds(text: &str) -> Result<Bounds, String> {
     let parts = text.split_once('=').and_then(|(name, ends)| Some((name, ends.split_once("..")?)));
     let number = |text: &str| text.trim().parse::<f64>().ok().filter(|x| x.is_finite());
