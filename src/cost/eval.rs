@@ -115,7 +115,8 @@ fn meaning(asked: &EvalLadder<'_>) -> Meaning {
         ),
         error: format!("largest CIE 1976 colour difference over these lights, {} degree observer", asked.observer),
         second_error: Some(
-            "largest r.m.s. difference of the radiance over a light, relative to the r.m.s. radiance; none where there is no radiance"
+            "largest r.m.s. difference of the radiance under a light, averaged from sample to sample, over its r.m.s.; none where there is \
+             no radiance"
                 .to_owned(),
         ),
         time: format!(
@@ -152,7 +153,7 @@ fn candidate(
     let block = operator.samples(&Array2::from_shape_fn((BLOCK, operator.nm().len()), mixed));
     Some(Candidate {
         name: format!("{}{of_rank} {} nm{precision}", way.by, way.step_nm),
-        knob: way.by.to_string(),
+        knob: format!("{}{precision}", way.by),
         options,
         error,
         second_error,
@@ -191,14 +192,20 @@ fn errors(
     (of_colour, of_radiance)
 }
 
-/// R.m.s. difference of a radiance to the exact one at the same wavelengths, over its r.m.s.
+/// R.m.s. difference of a radiance to the exact one, over its r.m.s.: both averaged from neighbour to neighbour, as samples are.
 fn relative(nm: &[f64], radiance: ndarray::ArrayView1<'_, f64>, exact: &Prediction) -> f64 {
     let visible = &exact.visible;
-    let at = |nm: f64| {
-        let k = visible.nm.iter().position(|known| *known == nm)?;
-        Some(visible.elastic[k] + visible.luminescent[k])
+    let step = if nm.len() > 1 { nm[1] - nm[0] } else { 1.0 };
+    let average = |centre: f64| {
+        let (mut sum, mut weights) = (0.0, 0.0);
+        for (k, nm) in visible.nm.iter().enumerate() {
+            let weight = (1.0 - (nm - centre).abs() / step.max(1.0)).max(0.0);
+            sum += weight * (visible.elastic[k] + visible.luminescent[k]);
+            weights += weight;
+        }
+        sum / weights
     };
-    let pairs = nm.iter().zip(radiance).filter_map(|(nm, found)| Some((*found, at(*nm)?)));
+    let pairs = nm.iter().zip(radiance).map(|(nm, found)| (*found, average(*nm)));
     let (difference, whole) = pairs.fold((0.0, 0.0), |(difference, whole), (found, expected)| {
         (difference + (found - expected).powi(2), whole + expected.powi(2))
     });

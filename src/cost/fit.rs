@@ -83,7 +83,7 @@ fn settings(measurement: &Measurement, options: &FitOptions) -> Vec<Setting> {
     let setting = |name: String, knob: &'static str, effort: Effort| Setting {
         name,
         knob,
-        options: effort_options(effort),
+        options: [reduction_options(options.reduction), effort_options(effort)].concat(),
         asked: FitOptions { effort, ..options.clone() },
     };
     let at = |(roughness_nodes, index_nodes, starts): (usize, usize, usize), tolerance: f64| Effort {
@@ -109,11 +109,18 @@ fn settings(measurement: &Measurement, options: &FitOptions) -> Vec<Setting> {
         all.extend([Reduction::Auto, Reduction::Luminance].map(|reduction| Setting {
             name: format!("reduce {reduction}"),
             knob: "bands in place of wavelengths",
-            options: vec!["--reduce".to_owned(), reduction.to_string()],
+            options: reduction_options(reduction),
             asked: FitOptions { reduction, effort: usual, ..options.clone() },
         }));
     }
     all
+}
+
+fn reduction_options(reduction: Reduction) -> Vec<String> {
+    match reduction {
+        Reduction::Auto => Vec::new(),
+        stated => vec!["--reduce".to_owned(), stated.to_string()],
+    }
 }
 
 /// What `bbrf fit` is told; nothing of what is usual.

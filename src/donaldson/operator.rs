@@ -4,7 +4,7 @@
 //! straight between them, and everything is linear in them: what is integrated is integrated once. What the step loses is measured by
 //! `bbrf cost eval`.
 
-use ndarray::{Array2, LinalgScalar};
+use ndarray::{Array2, LinalgScalar, s};
 
 use super::colour::{Colour, Observer, VISIBLE_NM};
 use super::light::{Extend, Light};
@@ -114,32 +114,20 @@ impl Operator {
         }
         let (nm, visible) = axis(surface.needed_nm(), way.step_nm);
         let whole = Whole::new(surface, &nm)?;
-        let sums = |at: &dyn Fn(f64) -> f64| whole.colour(observer, &nm, at);
-        let white = match way.by {
-            By::Colour => sums(&|_| 1.0),
-            _ => {
-                let mut white = Array2::zeros((nm.len(), 3));
-                for (k, row) in visible.clone().enumerate() {
-                    let weights = matching(observer, nm[visible.start + k], way.step_nm);
-                    (0..3).for_each(|c| white[(row, c)] = weights[c]);
-                }
-                white
-            }
-        };
-        let at_samples = || {
-            let weights = |row: usize| matching(observer, nm[visible.start + row], way.step_nm);
-            Array2::from_shape_fn((visible.len(), 3), |(row, c)| weights(row)[c])
-        };
+        let mut white = Array2::zeros((nm.len(), 3));
+        for row in visible.clone() {
+            let weights = matching(observer, nm[row], way.step_nm);
+            (0..3).for_each(|c| white[(row, c)] = weights[c]);
+        }
+        let weights = white.slice(s![visible.clone(), ..]).to_owned();
         let tables = match way.by {
             By::Integrals => return None,
-            By::Colour => {
-                let elastic = |nm: f64| whole.elastic_at(nm);
-                Tables { radiance: Radiance::None, colour: sums(&elastic) + whole.luminescent_colour(observer) }
-            }
-            By::Product => Tables { radiance: Radiance::Product(whole.product(&nm, &visible)), colour: at_samples() },
+            // The product with what a colour is a sum of, made once.
+            By::Colour => Tables { radiance: Radiance::None, colour: whole.product(&nm, &visible).dot(&weights) },
+            By::Product => Tables { radiance: Radiance::Product(whole.product(&nm, &visible)), colour: weights },
             By::Factors => {
                 let factored = whole.factored(factors?, &nm, &visible);
-                Tables { radiance: Radiance::Factors(factored), colour: at_samples() }
+                Tables { radiance: Radiance::Factors(factored), colour: weights }
             }
         };
         let tables = if way.single { Precision::Single(tables.cast()) } else { Precision::Double(tables) };
@@ -278,27 +266,6 @@ impl<'a> Whole<'a> {
             product[(row, column)] += self.elastic_at(nm[row]);
         }
         product
-    }
-
-    /// X, Y and Z of each sample, straight to its neighbours, times a factor: sums at every nanometre, as exact predictions have them.
-    fn colour(&self, observer: Observer, nm: &[f64], factor: &dyn Fn(f64) -> f64) -> Array2<f64> {
-        let mut sums = Array2::zeros((nm.len(), 3));
-        for whole in VISIBLE_NM.0..=VISIBLE_NM.1 {
-            let at = whole as f64;
-            let Some((below, above, part)) = place(nm, at) else { continue };
-            let (weights, factor) = (observer.matching(whole), factor(at));
-            for c in 0..3 {
-                sums[(below, c)] += weights[c] * factor * (1.0 - part);
-                sums[(above, c)] += weights[c] * factor * part;
-            }
-        }
-        sums
-    }
-
-    fn luminescent_colour(&self, observer: Observer) -> Array2<f64> {
-        let nm: Vec<f64> = (VISIBLE_NM.0..=VISIBLE_NM.1).map(|nm| nm as f64).collect();
-        let weights = Array2::from_shape_fn((nm.len(), 3), |(k, c)| observer.matching(VISIBLE_NM.0 + k)[c]);
-        self.shares.dot(&self.density(&nm).dot(&weights))
     }
 
     fn factored(

@@ -4,7 +4,7 @@ use std::fmt;
 use std::str::FromStr;
 
 /// How finely a fit searches and how far it goes down: the knobs that cost time. Less than the default can miss the global
-/// minimum; `docs/cost.md` shows what each step buys.
+/// minimum; `docs/fit_cost.md` shows what each step buys.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Effort {
     /// Nodes of the starting grid in roughness, from a lobe that the smallest half-vector angle just sees to one of a radian.

@@ -4,7 +4,7 @@ mod compare;
 mod complete;
 mod diagnose;
 mod outputs;
-mod question;
+pub(super) mod question;
 mod settings;
 mod text;
 
@@ -59,7 +59,7 @@ pub(crate) struct Arguments {
 }
 
 pub(crate) use compare::CompareResult;
-pub(super) use question::Question;
+use question::Question;
 
 /// What `--json` prints.
 #[derive(Debug, Serialize, JsonSchema)]

@@ -76,6 +76,36 @@ impl Question {
         }
     }
 
+    /// The words that ask a command the same. What is usual is left out, and what the rungs of a ladder say: effort and reduction.
+    pub(in crate::cli::command) fn words(&self) -> Vec<String> {
+        let usual = FitOptions::default();
+        let mut words = Vec::new();
+        let mut say = |option: &str, value: String| words.extend([format!("--{option}"), value]);
+        self.measurement.iter().for_each(|id| say("measurement", id.clone()));
+        if !self.terms.is_empty() {
+            say("terms", self.terms.iter().map(ToString::to_string).collect::<Vec<_>>().join(","));
+        }
+        if self.distribution != usual.distribution {
+            say("distribution", self.distribution.to_string());
+        }
+        if self.denominator != usual.denominator {
+            say("denominator", self.denominator.to_string());
+        }
+        if self.share.0 != usual.share {
+            say("share", self.share.to_string());
+        }
+        if self.loss != usual.loss {
+            say("loss", self.loss.name().to_owned());
+        }
+        self.bounds.iter().for_each(|bounds| say("bounds", bounds.to_string()));
+        if !self.mask.is_empty() {
+            say("mask", self.mask.to_string());
+        }
+        self.nuisance.iter().for_each(|nuisance| say("nuisance", nuisance.to_string()));
+        self.reference.iter().for_each(|reference| say("reference", reference.to_string()));
+        words
+    }
+
     /// The measurement asked for, or the one that can be meant: a factor of a sample before a radiance.
     pub(in crate::cli::command) fn choose<'a>(
         &self,

@@ -1,5 +1,7 @@
 //! Settings of a fit as they are spelled on the command line.
 
+use std::fmt;
+
 use crate::dataset::Effect;
 use crate::fit::{Loss, Share};
 
@@ -13,6 +15,29 @@ pub(super) struct Bounds {
     parameter: String,
     low: f64,
     high: f64,
+}
+
+impl fmt::Display for Sharing {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self.0 {
+            Some(Share::Shape) => "shape",
+            Some(Share::ShapeAndIntensity) => "shape-and-intensity",
+            None => "nothing",
+        })
+    }
+}
+
+impl fmt::Display for Bounds {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}={}..{}", self.parameter, self.low, self.high)
+    }
+}
+
+impl fmt::Display for Nuisance {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}={}", self.effect.map_or("wavelength-shift", Effect::name), self.value)?;
+        if self.sigma > 0.0 { write!(f, ",{}", self.sigma) } else { Ok(()) }
+    }
 }
 
 pub(super) fn share(text: &str) -> Result<Sharing, String> {
