@@ -1,6 +1,6 @@
 //! What accuracy costs: errors are what they say, the best rungs are marked, and an answer can be run as it stands.
 #![cfg(feature = "write")]
-#![allow(unreachable_pub, clippy::unwrap_used)]
+#![allow(unreachable_pub, clippy::unwrap_used, clippy::panic, reason = "a test")]
 
 #[path = "common/bispectral.rs"]
 mod bispectral;
