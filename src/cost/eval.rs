@@ -9,6 +9,7 @@ use crate::donaldson::{
     By, Colour, Extend, Light, Luminescence, Matrix, NotSeparated, Observer, Operator, Prediction, Reradiation,
     Separate, Separated, Way, separate,
 };
+use crate::quantity::QuantityKind;
 
 /// Lights that are predicted together while time is taken: the table stays in a cache, and a light comes from memory.
 const BLOCK: usize = 512;
@@ -62,7 +63,6 @@ pub fn eval_ladder(asked: &EvalLadder<'_>, patience: Patience) -> Result<Ladder,
         return Err(NoEvalLadder::NoColour(asked.subject.clone()));
     }
     let lights = asked.lights;
-    let mut next = 0;
     let mut candidates = vec![Candidate {
         name: "integrals".to_owned(),
         knob: "exact".to_owned(),
@@ -72,10 +72,10 @@ pub fn eval_ladder(asked: &EvalLadder<'_>, patience: Patience) -> Result<Ladder,
         bytes: None,
         note: Some("with all uncertainties".to_owned()),
         work: Box::new(move || {
-            std::hint::black_box(surface.under(&lights[next % lights.len()], asked.extend));
-            next += 1;
+            // All of them: lights of more wavelengths take longer.
+            lights.iter().for_each(|light| drop(std::hint::black_box(surface.under(light, asked.extend))));
         }),
-        times: asked.count,
+        times: asked.count / lights.len().max(1) as f64,
         read: None,
     }];
     let ways =
@@ -115,7 +115,7 @@ fn meaning(asked: &EvalLadder<'_>) -> Meaning {
         ),
         error: format!("largest CIE 1976 colour difference over these lights, {} degree observer", asked.observer),
         second_error: Some(
-            "largest r.m.s. difference of the radiance under a light, averaged from sample to sample, over its r.m.s.; none where there is \
+            "largest r.m.s. difference of the radiance under a light, both as samples, over its r.m.s.; none where there is \
              no radiance"
                 .to_owned(),
         ),
@@ -186,28 +186,24 @@ fn errors(
         let Some(difference) = found.and_then(difference) else { return (None, None) };
         of_colour = larger(of_colour, difference);
         if let Some(radiance) = &radiance {
-            of_radiance = larger(of_radiance, relative(operator.visible_nm(), radiance.row(row), exact));
+            let difference = relative(operator, radiance.row(row), exact);
+            of_radiance = difference.map_or(of_radiance, |difference| larger(of_radiance, difference));
         }
     }
     (of_colour, of_radiance)
 }
 
-/// R.m.s. difference of a radiance to the exact one, over its r.m.s.: both averaged from neighbour to neighbour, as samples are.
-fn relative(nm: &[f64], radiance: ndarray::ArrayView1<'_, f64>, exact: &Prediction) -> f64 {
+/// R.m.s. difference of a radiance to the exact one, over its r.m.s.: the exact one is sampled as a light is, so that a line counts with
+/// its energy and not with its height. `None` where the exact one has no value.
+fn relative(operator: &Operator, radiance: ndarray::ArrayView1<'_, f64>, exact: &Prediction) -> Option<f64> {
     let visible = &exact.visible;
-    let step = if nm.len() > 1 { nm[1] - nm[0] } else { 1.0 };
-    let average = |centre: f64| {
-        let (mut sum, mut weights) = (0.0, 0.0);
-        for (k, nm) in visible.nm.iter().enumerate() {
-            let weight = (1.0 - (nm - centre).abs() / step.max(1.0)).max(0.0);
-            sum += weight * (visible.elastic[k] + visible.luminescent[k]);
-            weights += weight;
-        }
-        sum / weights
-    };
-    let pairs = nm.iter().zip(radiance).map(|(nm, found)| (*found, average(*nm)));
+    let total = visible.elastic.iter().zip(&visible.luminescent).map(|(elastic, luminescent)| elastic + luminescent);
+    let exact = Light::new("radiance", QuantityKind::RelativeSpectrum, visible.nm.clone(), total.collect(), None);
+    let expected = operator.sampled(&exact.ok()?, Extend::Zero);
+    let from = operator.nm().partition_point(|nm| *nm < operator.visible_nm()[0]);
+    let pairs = radiance.iter().zip(&expected[from..]);
     let (difference, whole) = pairs.fold((0.0, 0.0), |(difference, whole), (found, expected)| {
         (difference + (found - expected).powi(2), whole + expected.powi(2))
     });
-    (difference / whole).sqrt()
+    Some((difference / whole).sqrt())
 }
