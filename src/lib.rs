@@ -13,9 +13,11 @@
 //! - [`fit`]: least squares over the terms, without a starting point.
 //! - [`donaldson`]: bispectral matrices separated, factorised, estimated from a few lights, and applied to any.
 //! - [`simulate`]: a sphere drawn with the terms, at the limit of the machine.
+//! - [`cost`]: what accuracy costs in time, measured here and now.
 //! - [`report`]: figures and the HTML page.
 
 pub mod container;
+pub mod cost;
 pub mod dataset;
 pub mod donaldson;
 pub mod export;

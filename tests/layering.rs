@@ -15,7 +15,7 @@ const ARROWS: &[(&str, &[&str])] = &[
     ("fit", &["dataset", "terms", "quantity"]),
     ("donaldson", &["dataset", "terms", "quantity"]),
     ("simulate", &["donaldson", "dataset", "terms", "quantity"]),
-    ("cost", &["fit", "simulate", "container", "dataset"]),
+    ("cost", &["fit", "donaldson", "simulate", "container", "dataset", "quantity"]),
     // Drawings of fitted terms name what terms and quantities name.
     ("report", &["dataset", "fit", "simulate", "cost", "validate", "donaldson", "terms", "quantity"]),
 ];

@@ -11,6 +11,7 @@ mod opened;
 mod output;
 mod overwrite;
 mod progress;
+mod references;
 
 use std::process::ExitCode;
 
@@ -31,6 +32,7 @@ enum Command {
     Eval(command::eval::Arguments),
     Design(Box<command::design::Arguments>),
     Donaldson(Box<command::donaldson::Arguments>),
+    Cost(command::cost::Arguments),
     Report(command::report::Arguments),
     Info(command::info::Arguments),
     Validate(command::validate::Arguments),
@@ -63,6 +65,7 @@ pub fn run() -> ExitCode {
         Command::Eval(arguments) => command::eval::run(&arguments),
         Command::Design(arguments) => command::design::run(&arguments),
         Command::Donaldson(arguments) => command::donaldson::run(&arguments),
+        Command::Cost(arguments) => command::cost::run(&arguments),
         Command::Report(arguments) => command::report::run(&arguments),
         Command::Info(arguments) => command::info::run(&arguments),
         Command::Validate(arguments) => command::validate::run(&arguments),

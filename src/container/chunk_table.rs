@@ -18,6 +18,8 @@ pub struct Chunks(pub(super) HashMap<String, Placed>);
 pub(super) struct Placed {
     /// Lengths of a chunk.
     pub(super) shape: Vec<usize>,
+    /// Level of deflate, as the header of the dataset states it.
+    pub(super) level: Option<u32>,
     /// The chunks; `None` for an index that no writer of this standard makes, so a damaged one.
     pub(super) entries: Option<Vec<Entry>>,
 }
@@ -41,10 +43,21 @@ impl Chunks {
         for layout in layouts {
             if let DataLayout::Chunked { address, dims, chunk_indexing: None, .. } = layout {
                 let shape = dims.iter().take(axes).map(|length| *length as usize).collect();
-                self.0.insert(path.to_owned(), Placed { shape, entries: entries(file, *address, dims, axes) });
+                let (level, entries) = (level(header), entries(file, *address, dims, axes));
+                self.0.insert(path.to_owned(), Placed { shape, level, entries });
             }
         }
     }
+}
+
+/// The level of deflate (filter 1) that a header states.
+fn level(header: &ObjectHeader) -> Option<u32> {
+    header.messages.iter().find_map(|message| match message {
+        HdfMessage::FilterPipeline(pipeline) => {
+            pipeline.filters.iter().find(|filter| filter.id == 1)?.client_data.first().copied()
+        }
+        _ => None,
+    })
 }
 
 fn entries(file: &Hdf5File, address: u64, dims: &[u32], axes: usize) -> Option<Vec<Entry>> {

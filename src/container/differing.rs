@@ -3,6 +3,8 @@
 use super::chunk_table::Chunks;
 #[cfg(feature = "write")]
 use super::digest::Digests;
+#[cfg(feature = "write")]
+use super::storing::Storing;
 use super::tree::Group;
 #[cfg(feature = "write")]
 use super::write::{Plan, chunks::Source, with_image};
@@ -28,7 +30,13 @@ impl Differing {
     #[cfg(feature = "write")]
     pub(super) fn of(bytes: &[u8], chunks: &Chunks, tree: &Group, canonical: &Group) -> Option<Self> {
         let digests = Digests::stated(tree)?;
-        let plan = Plan { source: Source::File(bytes, &chunks.0), digests: Some(&digests) };
+        // A file may be deflated at any one level; a header that differs from the others is a difference.
+        let mut levels: Vec<u32> = chunks.0.values().filter_map(|placed| placed.level).collect();
+        levels.sort_unstable();
+        let usual = Storing::default();
+        let compression = levels.get(levels.len() / 2).copied().unwrap_or(usual.compression);
+        let storing = Storing { compression: compression.min(9), ..usual };
+        let plan = Plan { source: Source::File(bytes, &chunks.0), digests: Some(&digests), storing };
         with_image(canonical, plan, |image| Self::between(image, bytes)).ok().flatten()
     }
 

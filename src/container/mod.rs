@@ -28,6 +28,7 @@ mod links;
 mod open;
 mod read;
 pub mod replace;
+mod storing;
 #[doc(hidden)]
 pub use crate::dataset::tree;
 #[cfg(feature = "write")]
@@ -44,10 +45,12 @@ pub use foreign::Foreign;
 pub use limits::Limits;
 pub use open::{Inspection, Mismatch, Opened, inspect, open, open_to_rewrite, open_verified, read_bytes, read_file};
 pub use read::part::{Part, read_part};
+pub use storing::Storing;
 
 #[cfg(feature = "write")]
 pub use save::{
-    document_bytes, document_tree, rewrite, sign_tree, tree_bytes, unchecked_bytes, write_file, write_file_keeping,
+    document_bytes, document_tree, rewrite, rewrite_storing, sign_tree, tree_bytes, unchecked_bytes, write_file,
+    write_file_keeping, write_file_storing,
 };
 
 #[cfg(feature = "write")]

@@ -30,6 +30,7 @@ mod provenance;
 mod reduce;
 mod residual;
 mod sample;
+mod single;
 #[doc(hidden)]
 pub mod tree;
 mod twin;
@@ -58,4 +59,5 @@ pub use provenance::{Assumption, InputFile, Notice, Provenance, Receipt, Step};
 pub use reduce::{ReduceError, Reduced, Reduction, UnknownReduction, reduce};
 pub use residual::{Prediction, TermsError, predict, residuals};
 pub use sample::{Sample, Symmetry, WhiteReference};
+pub use single::NotSingle;
 pub use twin::{NoTwin, with_distribution};

@@ -1,5 +1,8 @@
 //! How much a fit works for its result.
 
+use std::fmt;
+use std::str::FromStr;
+
 /// How finely a fit searches and how far it goes down: the knobs that cost time. Less than the default can miss the global
 /// minimum; `docs/fit_cost.md` shows what each step buys.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -26,6 +29,68 @@ impl Effort {
             // Not a number: as small as rounding lets through.
             tolerance: self.tolerance.max(0.0),
         }
+    }
+}
+
+/// A text that names no nodes.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("`{0}` are no nodes; expected ROUGHNESSxINDEXxSTARTS, each from 1 to 1000, as 12x3x2")]
+pub struct UnknownNodes(String);
+
+/// The nodes of a starting grid and how many of them are polished, as `12x3x2`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Nodes {
+    /// As [`Effort::roughness_nodes`].
+    pub roughness: usize,
+    /// As [`Effort::index_nodes`].
+    pub index: usize,
+    /// As [`Effort::starts`].
+    pub starts: usize,
+}
+
+impl FromStr for Nodes {
+    type Err = UnknownNodes;
+
+    fn from_str(text: &str) -> Result<Self, UnknownNodes> {
+        let number = |text: &str| text.parse::<usize>().ok().filter(|count| (1..=1000).contains(count));
+        let numbers: Option<Vec<usize>> = text.split('x').map(number).collect();
+        match numbers.as_deref() {
+            Some([roughness, index, starts]) => Ok(Self { roughness: *roughness, index: *index, starts: *starts }),
+            _ => Err(UnknownNodes(text.to_owned())),
+        }
+    }
+}
+
+impl fmt::Display for Nodes {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}x{}x{}", self.roughness, self.index, self.starts)
+    }
+}
+
+impl Effort {
+    /// The effort of these nodes and this tolerance.
+    #[must_use]
+    pub fn of(nodes: Nodes, tolerance: f64) -> Self {
+        Self { roughness_nodes: nodes.roughness, index_nodes: nodes.index, starts: nodes.starts, tolerance }
+    }
+
+    /// Its nodes.
+    #[must_use]
+    pub fn nodes(self) -> Nodes {
+        Nodes { roughness: self.roughness_nodes, index: self.index_nodes, starts: self.starts }
+    }
+
+    /// The search, as a model states its method; the usual tolerance is not named.
+    pub(super) fn in_words(self) -> String {
+        let Self { roughness_nodes, index_nodes, tolerance, .. } = self;
+        let starts = match self.starts {
+            1 => "one start".to_owned(),
+            2 => "two starts".to_owned(),
+            many => format!("{many} starts"),
+        };
+        let usual = Self::default().tolerance;
+        let tolerance = if tolerance == usual { String::new() } else { format!(" to a tolerance of {tolerance:e}") };
+        format!("a {roughness_nodes} x {index_nodes} grid, {starts} polished by Levenberg-Marquardt{tolerance}")
     }
 }
 

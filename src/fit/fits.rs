@@ -262,6 +262,7 @@ impl Fits {
             loss => format!("least squares reweighted for the loss `{}`, its scale from the residuals", loss.name()),
         };
         let evaluations: usize = self.list.iter().map(|observed| observed.fit.evaluations).sum();
+        let effort = options.effort.in_words();
         let passes = self.list.iter().map(|observed| observed.passes).max().unwrap_or(1);
         let passes = if passes > 1 { format!(", {passes} passes") } else { String::new() };
         let not_settled = self.list.iter().filter(|observed| !observed.settled).count();
@@ -278,8 +279,7 @@ impl Fits {
             (Some(Share::ShapeAndIntensity), _) => "; roughness, index and intensity common to all emission values",
         };
         format!(
-            "{cost}{correlated}; amplitudes non-negative by variable projection; roughness and index from a 12 x 3 grid, two starts \
-             polished by Levenberg-Marquardt{together}; {} after {evaluations} evaluations{passes}{unsettled}{}",
+            "{cost}{correlated}; amplitudes non-negative by variable projection; roughness and index from {effort}{together}; {} after {evaluations} evaluations{passes}{unsettled}{}",
             self.worst_stop().text(),
             self.singular()
         )

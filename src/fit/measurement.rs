@@ -1,5 +1,6 @@
 //! From a measurement of a document to a fitted model.
 
+use super::effort::Effort;
 use super::fits::Fits;
 use super::geometry_set::GeometrySet;
 use super::identifiability::findings;
@@ -156,6 +157,8 @@ pub(super) fn fit_reduced(
     }
     let set = GeometrySet::new(&data.geometry, reference, options.distribution, options.denominator)
         .map_err(geometry_error)?;
+    // Its tables are built already, of the usual effort.
+    let set = if options.effort == Effort::default() { set } else { set.with_effort(options.effort) };
     let (fits, undone) = fitted(&set, terms)?;
     if fits.has_specular() || set.undefined().is_empty() || !terms.diffuse {
         return Ok((set, fits, undone));

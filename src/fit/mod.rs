@@ -52,7 +52,7 @@ pub use crate::dataset::{Bound, Side};
 pub use comparison::{Compared, Comparison, Criterion, Difference, Indistinguishable, Shape, compare_measurement};
 pub use curvature::Share;
 pub use diagnosis::{Diagnosis, MeasurementDiagnosis, diagnose_measurement};
-pub use effort::Effort;
+pub use effort::{Effort, Nodes, UnknownNodes};
 pub use error::DataError;
 pub use geometry_set::{GeometrySet, SetError};
 pub use joint::Nuisance;

@@ -1,6 +1,7 @@
 //! What is asked of a fit, and why it cannot be done.
 
 use super::curvature::Share;
+use super::effort::Effort;
 use super::error::DataError;
 use super::geometry_set::SetError;
 use super::joint::Nuisance;
@@ -30,6 +31,8 @@ pub struct FitOptions {
     pub roughness_box: Option<(f64, f64)>,
     /// Bounds of the refractive index, likewise.
     pub index_box: Option<(f64, f64)>,
+    /// How much the fit works for its result.
+    pub effort: Effort,
     /// Rows to leave out.
     pub mask: Mask,
     /// Effects of the instrument on the geometry, known or to be fitted.
@@ -53,6 +56,7 @@ impl Default for FitOptions {
             loss: Loss::Squares,
             roughness_box: None,
             index_box: None,
+            effort: Effort::default(),
             mask: Mask::default(),
             nuisances: Vec::new(),
             wavelength_shift_nm: 0.0,

@@ -43,6 +43,11 @@ pub struct Knob {
 /// # Errors
 /// [`ReportError::Empty`] when nothing is positive and finite.
 pub fn trade(knobs: &[Knob], bound: &str, text: &CurveText) -> Result<Figure, ReportError> {
+    draw(knobs, Some(bound), text)
+}
+
+/// The same; without the name of a bound none is drawn.
+pub(super) fn draw(knobs: &[Knob], bound: Option<&str>, text: &CurveText) -> Result<Figure, ReportError> {
     let empty = || ReportError::Empty { figure: text.name.clone() };
     let area = text.area();
     let drawn = |setting: &&Setting| [setting.cost, setting.result, setting.bound].iter().all(|x| is_drawn(*x));
@@ -65,7 +70,9 @@ pub fn trade(knobs: &[Knob], bound: &str, text: &CurveText) -> Result<Figure, Re
             canvas.dot(frame.point(setting.cost, setting.result), 4.0, colour());
         }
         // Above the results, which lie on it where they are as good as can be.
-        canvas.polyline(line(|setting| setting.bound), INK, 1.0);
+        if bound.is_some() {
+            canvas.polyline(line(|setting| setting.bound), INK, 1.0);
+        }
     }
     let mut taken = Vec::new();
     for (k, setting) in knobs.iter().enumerate().flat_map(|(k, knob)| knob.settings.iter().map(move |s| (k, s))) {
@@ -78,7 +85,7 @@ pub fn trade(knobs: &[Knob], bound: &str, text: &CurveText) -> Result<Figure, Re
     }
     frame.draw_axes(&mut canvas, &text.labels());
     let names = knobs.iter().enumerate().map(|(k, knob)| (LINES[k % LINES.len()].clone(), knob.name.as_str()));
-    for (k, (colour, name)) in names.chain([(INK, bound)]).enumerate() {
+    for (k, (colour, name)) in names.chain(bound.map(|bound| (INK, bound))).enumerate() {
         let at = (area.left + (k % 2) as f64 * 310.0, area.bottom() + 74.0 + LEGEND_LINE * (k / 2) as f64);
         draw_name(&mut canvas, at, colour, name);
     }

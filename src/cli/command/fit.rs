@@ -4,6 +4,7 @@ mod compare;
 mod complete;
 mod diagnose;
 mod outputs;
+pub(super) mod question;
 mod settings;
 mod text;
 
@@ -21,9 +22,8 @@ use crate::cli::opened::open_to_rewrite;
 use crate::cli::output::{not_written, print_json, print_text, report_error};
 use crate::cli::progress;
 use crate::container::{self, Opened};
-use crate::dataset::{Document, FittedParameter, Mask, Measurement, Model, Reduction, Role, Step};
-use crate::fit::{FitOptions, Loss, fit_measurement};
-use crate::quantity::Reference;
+use crate::dataset::{Document, FittedParameter, Model, Step};
+use crate::fit::fit_measurement;
 use crate::terms::{Denominator, Distribution, TermKind};
 
 /// Fit Lambertian and Torrance-Sparrow terms, without a starting point.
@@ -38,40 +38,8 @@ pub(crate) struct Arguments {
     /// file takes the place of the old one in one step, whole or not at all.
     #[arg(short, long)]
     output: Option<PathBuf>,
-    /// The measurement to fit; needed where a file holds several that can be
-    #[arg(long)]
-    measurement: Option<String>,
-    /// Terms, separated by commas [default: luminescent for a luminescent factor, else lambertian,torrance-sparrow]
-    #[arg(long, value_delimiter = ',')]
-    terms: Vec<TermKind>,
-    /// Form of D: gaussian-half-height, gaussian, torrance-sparrow-1967, gaussian-normalised, beckmann, trowbridge-reitz
-    #[arg(long, default_value = Distribution::GaussianHalfHeight.name())]
-    distribution: Distribution,
-    /// Denominator of the specular term: cos-theta-i, cos-theta-v, cos-i-cos-v
-    #[arg(long, default_value = Denominator::CosThetaI.name())]
-    denominator: Denominator,
-    /// How a spectrum becomes the fitted number: auto, band:FROM-TO (nm), luminance, none (every wavelength)
-    #[arg(long, default_value = "auto")]
-    reduce: Reduction,
-    /// What wavelengths that are fitted one by one have in common: shape (roughness and index), shape-and-intensity, nothing
-    #[arg(long, default_value = "shape", value_parser = settings::share)]
-    share: settings::Sharing,
-    /// What a residual costs: squares, huber (outliers pull little), tukey (outliers do not pull)
-    #[arg(long, default_value = "squares", value_parser = settings::loss)]
-    loss: Loss,
-    /// Bounds as roughness=LOW..HIGH (unit of the distribution) or refractive_index=LOW..HIGH; repeat for both
-    #[arg(long, value_parser = settings::bounds)]
-    bounds: Vec<settings::Bounds>,
-    /// Leave rows out: theta-i>DEGREES, theta-v>DEGREES, half-angle>DEGREES, rows:FIRST-LAST (from 0), by commas
-    #[arg(long, default_value = "")]
-    mask: Mask,
-    /// An effect of the instrument as NAME=VALUE (known) or NAME=VALUE,SIGMA (fitted with that prior): incidence-offset,
-    /// viewing-offset, source-size, aperture in degrees, wavelength-shift in nm; repeat for several
-    #[arg(long, value_parser = settings::nuisance)]
-    nuisance: Vec<settings::Nuisance>,
-    /// Reference to assume where the file states none: same-geometry, fixed-geometry(THETA_I,THETA_V), none
-    #[arg(long)]
-    reference: Option<Reference>,
+    #[command(flatten)]
+    question: Question,
     /// Complete the model with a bispectral matrix, FILE.bbrf#ID (FILE.bbrf where it holds one): Y = Y_l + Y_d + Y_s
     ///
     /// The matrix is separated as `bbrf donaldson separate` does, scan and matrix are held against each other (a disagreement is a
@@ -91,6 +59,7 @@ pub(crate) struct Arguments {
 }
 
 pub(crate) use compare::CompareResult;
+use question::Question;
 
 /// What `--json` prints.
 #[derive(Debug, Serialize, JsonSchema)]
@@ -251,26 +220,12 @@ fn fit_file(
     matrix: Option<&complete::Source>,
 ) -> Result<FittedModel, miette::Report> {
     let Opened { mut document, foreign, .. } = open_to_rewrite(file)?;
-    let measurement = choose(&document, arguments.measurement.as_deref(), file)?;
-    let options = FitOptions {
-        terms: arguments.terms.clone(),
-        distribution: arguments.distribution,
-        denominator: arguments.denominator,
-        reduction: arguments.reduce,
-        share: arguments.share.0,
-        loss: arguments.loss,
-        roughness_box: settings::within(&arguments.bounds, "roughness"),
-        index_box: settings::within(&arguments.bounds, "refractive_index"),
-        mask: arguments.mask.clone(),
-        nuisances: arguments.nuisance.iter().filter_map(settings::Nuisance::of_geometry).collect(),
-        wavelength_shift_nm: settings::wavelength_shift(&arguments.nuisance),
-        assume_reference: arguments.reference,
-        data_digest: container::measurement_digest(measurement)
-            .map_err(|error| miette!("{}: {error}", file.display()))?,
-    };
+    let measurement = arguments.question.choose(&document, file)?;
+    let digest = container::measurement_digest(measurement).map_err(|error| miette!("{}: {error}", file.display()))?;
+    let options = arguments.question.options(digest);
     let start = Instant::now();
     let mut model = fit_measurement(&document, measurement, &options)
-        .map_err(|error| miette!("{}: {error}{}", file.display(), hint(&error)))?;
+        .map_err(|error| miette!("{}: {error}{}", file.display(), question::hint(&error)))?;
     let seconds = start.elapsed().as_secs_f64();
     let mut result = fitted_model(file, &model, seconds);
     if let Some(page) = &arguments.diagnose {
@@ -292,38 +247,6 @@ fn fit_file(
         container::write_file_keeping(&document, &foreign, output).map_err(|error| not_written(&error))?;
     }
     Ok(result)
-}
-
-/// How the call can be mended where the error alone does not say.
-fn hint(error: &crate::fit::FitError) -> &'static str {
-    use crate::fit::{FitError, SetError};
-    match error {
-        FitError::Geometry { source: SetError::Reference(_), .. } => {
-            ", in the file, or pass it as --reference (it is recorded as an assumption)"
-        }
-        _ => "",
-    }
-}
-
-/// The measurement asked for, or the one that can be meant: a factor of a sample before a radiance.
-fn choose<'a>(document: &'a Document, asked: Option<&str>, file: &Path) -> Result<&'a Measurement, miette::Report> {
-    let ids = || document.measurements.iter().map(|m| m.id.to_string()).collect::<Vec<_>>().join(", ");
-    if let Some(id) = asked {
-        return document
-            .measurement(id)
-            .ok_or_else(|| miette!("{}: no measurement `{id}`; the file holds: {}", file.display(), ids()));
-    }
-    let samples: Vec<&Measurement> = document.measurements.iter().filter(|m| m.role == Role::Sample).collect();
-    let factors: Vec<&Measurement> = samples.iter().copied().filter(|m| m.quantity.kind.is_factor()).collect();
-    match (factors.as_slice(), samples.as_slice()) {
-        ([one], _) | ([], [one]) => Ok(one),
-        ([], []) => Err(miette!("{}: no measurement of a sample; the file holds: {}", file.display(), ids())),
-        _ => Err(miette!(
-            "{}: several measurements can be fitted ({}); name one with --measurement",
-            file.display(),
-            ids()
-        )),
-    }
 }
 
 /// Puts the model into the document, in place of an older one of the same id.

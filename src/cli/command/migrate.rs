@@ -1,4 +1,5 @@
-//! `bbrf migrate`: a file in the version of the standard that this program writes, or without the names of people.
+//! `bbrf migrate`: a file in the version of the standard that this program writes, without the names of people, or laid down in
+//! another way.
 
 use std::path::PathBuf;
 
@@ -10,11 +11,14 @@ use crate::cli::exit::{CommandResult, Outcome};
 use crate::cli::opened::say_later;
 use crate::cli::output::{not_written, print_json, print_message, print_text};
 use crate::cli::overwrite::refuse_overwriting;
+use crate::cli::references::keeping_references;
 use crate::container::layout::{self, MINOR, VERSION};
-use crate::container::{self, FileBytes, Limits, Opened, ReadError, inspect};
+use crate::container::{self, FileBytes, Limits, Opened, ReadError, Storing, inspect};
 use crate::dataset::{Anonymised, Document, Step};
 
-/// Bring a file to the current version of the standard, or take the names of people out of it.
+/// Bring a file to the current version of the standard, take the names of people out of it, or store it in another way
+///
+/// `bbrf cost storage` measures what each way of storing costs.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Arguments {
     /// The .bbrf file
@@ -25,9 +29,31 @@ pub(crate) struct Arguments {
     /// Take out the contact and the operators, and list texts that may still name a person
     #[arg(long, requires = "output")]
     anonymise: bool,
+    /// Level of deflate, 0 (none) to 9 [default: 4]; what the file says and its digests stay
+    #[arg(long, requires = "output", value_name = "LEVEL", value_parser = clap::value_parser!(u32).range(0..=9))]
+    compression: Option<u32>,
+    /// Bytes of a chunk before compression, about; at least a row [default: 1048576]
+    #[arg(long, requires = "output", value_name = "BYTES", value_parser = clap::value_parser!(u32).range(1..=1 << 30))]
+    chunk: Option<u32>,
+    /// Round values and their uncertainties to single precision (4 bytes, seven digits): the measurements then have other digests
+    #[arg(long, requires = "output")]
+    single: bool,
     /// Print JSON
     #[arg(long)]
     json: bool,
+}
+
+impl Arguments {
+    /// How the file is asked to be stored; `None` where nothing is asked.
+    fn storing(&self) -> Option<Storing> {
+        let usual = Storing::default();
+        let is_asked = self.compression.is_some() || self.chunk.is_some() || self.single;
+        is_asked.then(|| Storing {
+            compression: self.compression.unwrap_or(usual.compression),
+            chunk_bytes: self.chunk.map_or(usual.chunk_bytes, |bytes| bytes as usize),
+            single: self.single,
+        })
+    }
 }
 
 /// What `--json` prints.
@@ -72,7 +98,8 @@ pub(crate) fn run(arguments: &Arguments) -> CommandResult {
         removed: Vec::new(),
         suspects: Vec::new(),
     };
-    if let (Some(output), true) = (&arguments.output, arguments.anonymise || is_later) {
+    let storing = arguments.storing();
+    if let (Some(output), true) = (&arguments.output, arguments.anonymise || is_later || storing.is_some()) {
         let Opened { mut document, foreign, .. } = match container::open_to_rewrite(&arguments.file) {
             Err(error @ ReadError::Later { .. }) => {
                 print_message(&format!("bbrf: {error}"));
@@ -99,7 +126,11 @@ pub(crate) fn run(arguments: &Arguments) -> CommandResult {
                 text: "(content that the standard does not know)".to_owned(),
             }));
         }
-        container::write_file_keeping(&document, &foreign, output).map_err(|error| not_written(&error))?;
+        if arguments.single {
+            in_single(&mut document).map_err(|error| miette!("{name}: {error}"))?;
+        }
+        container::write_file_storing(&document, &foreign, storing.unwrap_or_default(), output)
+            .map_err(|error| not_written(&error))?;
         result.output = Some(output.display().to_string());
     }
     print(arguments, &result)?;
@@ -118,27 +149,9 @@ fn stated_version(arguments: &Arguments) -> Result<String, miette::Report> {
     Ok(stated.unwrap_or_default().to_owned())
 }
 
-/// Takes the names out. Models keep the measurement they were fitted to: what they refer to by its digest is that
-/// measurement without the operator.
+/// Takes the names out.
 fn anonymised(document: &mut Document) -> Result<Anonymised, miette::Report> {
-    let digest = |document: &Document, id: &str| -> Result<Option<String>, miette::Report> {
-        let measurement = document.measurement(id);
-        let digest = measurement.map(container::measurement_digest).transpose();
-        digest.map_err(|error| miette!("{error}"))
-    };
-    let mut current = Vec::new();
-    for (position, model) in document.models.iter().enumerate() {
-        if digest(document, model.measurement.as_str())?.as_deref() == Some(model.data_digest.as_str()) {
-            current.push(position);
-        }
-    }
-    let found = document.anonymise();
-    for position in current {
-        let id = document.models[position].measurement.to_string();
-        if let Some(digest) = digest(document, &id)? {
-            document.models[position].data_digest = digest;
-        }
-    }
+    let found = keeping_references(document, |document| Ok(document.anonymise()))?;
     if !found.removed.is_empty() {
         document
             .provenance
@@ -146,6 +159,13 @@ fn anonymised(document: &mut Document) -> Result<Anonymised, miette::Report> {
             .push(Step::by_this_program(format!("names of people taken out: {}", found.removed.join(", "))));
     }
     Ok(found)
+}
+
+/// Rounds the values.
+fn in_single(document: &mut Document) -> Result<(), miette::Report> {
+    keeping_references(document, |document| document.round_to_single().map_err(|error| miette!("{error}")))?;
+    document.provenance.steps.push(Step::by_this_program("values rounded to single precision".to_owned()));
+    Ok(())
 }
 
 fn print(arguments: &Arguments, result: &MigrateResult) -> Result<(), miette::Report> {

@@ -1,6 +1,7 @@
 //! One file per command. Each has `Arguments` and `run(&Arguments) -> CommandResult`.
 
 pub(crate) mod convert;
+pub(crate) mod cost;
 pub(crate) mod design;
 pub(crate) mod donaldson;
 pub(crate) mod eval;

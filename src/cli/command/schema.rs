@@ -22,11 +22,13 @@ pub(crate) fn all() -> Vec<(&'static str, Schema)> {
     let mut schemas = vec![
         ("convert", schema_for!(super::convert::ConvertResult)),
         ("convert-model", schema_for!(super::convert::ConvertModelResult)),
+        ("cost", schema_for!(super::cost::CostResult)),
         ("design", schema_for!(super::design::DesignResult)),
         ("donaldson-estimate", schema_for!(super::donaldson::estimate::EstimateResult)),
         ("donaldson-separate", schema_for!(super::donaldson::separate::SeparateResult)),
         ("document", schema_for!(Document)),
         ("donaldson-predict", schema_for!(super::donaldson::predict::PredictResult)),
+        ("donaldson-predict-sampled", schema_for!(super::donaldson::predict::SampledResult)),
         ("eval", schema_for!(super::eval::EvalResult)),
         ("eval-complete", schema_for!(super::eval::EvalCompleteResult)),
         ("eval-model", schema_for!(crate::cli::model_source::ModelJson)),

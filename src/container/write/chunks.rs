@@ -13,9 +13,6 @@ use rayon::iter::{IndexedParallelIterator, IntoParallelIterator, ParallelIterato
 use super::super::checksum::fletcher32;
 use super::super::chunk_table::Placed;
 
-/// Level of deflate: beyond it files hardly shrink.
-const LEVEL: u32 = 4;
-
 /// Where chunks come from.
 #[derive(Debug, Clone, Copy)]
 pub(in super::super) enum Source<'a> {
@@ -31,10 +28,10 @@ pub(super) struct Chunk<'a> {
     pub(super) bytes: std::borrow::Cow<'a, [u8]>,
 }
 
-/// The chunks of an array whose values are `bytes`, with an element to fill the last one up; chunks are whole rows.
+/// The chunks of an array whose values are `bytes`, deflated at a level, with an element to fill the last one up; chunks are whole rows.
 /// `None` where the file that they are to be taken from has others.
 pub(super) fn chunks<'a>(
-    source: Source<'a>,
+    (source, level): (Source<'a>, u32),
     path: &str,
     bytes: &[u8],
     fill: &[u8],
@@ -60,14 +57,14 @@ pub(super) fn chunks<'a>(
     }
     let values: Vec<&[u8]> = bytes.chunks(chunk_bytes).collect();
     let encoded = values.into_par_iter().enumerate().map(|(k, values)| {
-        let encoded = encode(values, chunk_bytes, fill)?;
+        let encoded = encode(values, chunk_bytes, fill, level)?;
         Some(Chunk { first_row: (k * shape[0]) as u64, bytes: encoded.into() })
     });
     encoded.collect()
 }
 
 /// One chunk; the last is filled up to its full length.
-fn encode(values: &[u8], length: usize, fill: &[u8]) -> Option<Vec<u8>> {
+fn encode(values: &[u8], length: usize, fill: &[u8], level: u32) -> Option<Vec<u8>> {
     let width = fill.len();
     let mut shuffled = vec![0; length];
     for (byte, plane) in shuffled.chunks_mut(length / width).enumerate() {
@@ -76,7 +73,7 @@ fn encode(values: &[u8], length: usize, fill: &[u8]) -> Option<Vec<u8>> {
             *target = element[byte];
         }
     }
-    let mut encoder = ZlibEncoder::new(Vec::with_capacity(length / 2), Compression::new(LEVEL));
+    let mut encoder = ZlibEncoder::new(Vec::with_capacity(length / 2), Compression::new(level));
     encoder.write_all(&shuffled).ok()?;
     let mut encoded = encoder.finish().ok()?;
     let checksum = fletcher32(&encoded);

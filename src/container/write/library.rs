@@ -44,6 +44,8 @@ impl Drop for Handle {
 pub(super) struct Storage {
     /// Lengths of a chunk; `None` keeps the values in one piece.
     pub(super) chunk: Option<Vec<usize>>,
+    /// Level of deflate.
+    pub(super) compression: u32,
     /// True for data that may be missing: what is not written reads as NaN.
     pub(super) nan_fill: bool,
 }
@@ -170,7 +172,7 @@ impl Handle {
         let (path, c_name) = (format!("{}/{name}", self.path), c_name(name)?);
         let (raw, kind) = element(&array.data, &path)?;
         let space = space(&array.shape, &path)?;
-        let list = creation_list(storage, &path)?;
+        let list = creation_list(storage, &array.data, &path)?;
         // SAFETY: every id is open; the buffer holds as many elements of the type as the space.
         unsafe {
             let default = h5p::H5P_DEFAULT;
@@ -267,21 +269,29 @@ fn rank(shape: &[usize]) -> i32 {
     i32::try_from(shape.len()).unwrap_or(i32::MAX)
 }
 
-fn creation_list(storage: &Storage, path: &str) -> Result<Handle, WriteError> {
+fn creation_list(storage: &Storage, data: &Data, path: &str) -> Result<Handle, WriteError> {
     // SAFETY: the list is open; `chunk` has as many entries as the rank says; the fill value has the type named.
     unsafe {
         let list = handle(h5p::H5Pcreate(*h5p::H5P_CLS_DATASET_CREATE), h5p::H5Pclose, "H5Pcreate", path)?;
         set_up_object(&list)?;
         if storage.nan_fill {
-            let nan = f64::NAN.to_le_bytes();
-            let status = h5p::H5Pset_fill_value(list.id, *h5t::H5T_IEEE_F64LE, nan.as_ptr().cast::<c_void>());
+            let status = match data {
+                Data::F32(_) => {
+                    let nan = f32::NAN.to_le_bytes();
+                    h5p::H5Pset_fill_value(list.id, *h5t::H5T_IEEE_F32LE, nan.as_ptr().cast::<c_void>())
+                }
+                _ => {
+                    let nan = f64::NAN.to_le_bytes();
+                    h5p::H5Pset_fill_value(list.id, *h5t::H5T_IEEE_F64LE, nan.as_ptr().cast::<c_void>())
+                }
+            };
             done(status, "H5Pset_fill_value", path)?;
         }
         if let Some(chunk) = &storage.chunk {
             let lengths: Vec<u64> = chunk.iter().map(|length| *length as u64).collect();
             done(h5p::H5Pset_chunk(list.id, rank(chunk), lengths.as_ptr()), "H5Pset_chunk", path)?;
             done(h5p::H5Pset_shuffle(list.id), "H5Pset_shuffle", path)?;
-            done(h5p::H5Pset_deflate(list.id, 4), "H5Pset_deflate", path)?;
+            done(h5p::H5Pset_deflate(list.id, storage.compression), "H5Pset_deflate", path)?;
             done(h5p::H5Pset_fletcher32(list.id), "H5Pset_fletcher32", path)?;
         }
         Ok(list)

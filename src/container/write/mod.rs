@@ -13,13 +13,11 @@ use std::collections::{BTreeMap, HashMap};
 use super::digest::Digests;
 use super::error::WriteError;
 use super::layout::name;
+use super::storing::Storing;
 use super::tree::{Array, Attributes, Data, Dataset, Group};
 use chunks::{Chunk, Source};
 use library::{Handle, Storage, exclusively, memory_file};
 use raw::Raw;
-
-/// Bytes of a chunk before compression, about.
-const CHUNK_BYTES: usize = 1 << 20;
 
 /// What goes into a file beside the tree.
 #[derive(Debug, Clone, Copy)]
@@ -28,6 +26,8 @@ pub(super) struct Plan<'a> {
     pub(super) source: Source<'a>,
     /// The digests with which objects are signed that are not yet.
     pub(super) digests: Option<&'a Digests>,
+    /// How values are laid down.
+    pub(super) storing: Storing,
 }
 
 /// The bytes of the file that holds a tree.
@@ -45,8 +45,8 @@ pub(super) fn to_bytes(root: &Group, plan: Plan<'_>) -> Result<Vec<u8>, WriteErr
 pub(super) fn with_image<R>(root: &Group, plan: Plan<'_>, look: impl FnOnce(&[u8]) -> R) -> Result<R, WriteError> {
     // Over all cores, and therefore before the library is taken.
     let mut chunks = HashMap::new();
-    prepare(root, "", plan.source, &mut chunks)?;
-    let made = Made { digests: plan.digests, chunks };
+    prepare(root, "", &plan, &mut chunks)?;
+    let made = Made { digests: plan.digests, storing: plan.storing, chunks };
     exclusively(|| {
         let file = memory_file()?;
         write_group(&file, root, "", &made)?;
@@ -57,6 +57,7 @@ pub(super) fn with_image<R>(root: &Group, plan: Plan<'_>, look: impl FnOnce(&[u8
 /// What was made of a tree before it is written.
 struct Made<'a> {
     digests: Option<&'a Digests>,
+    storing: Storing,
     /// The chunks of every dataset that has any, by its path.
     chunks: HashMap<String, Vec<Chunk<'a>>>,
 }
@@ -65,20 +66,27 @@ struct Made<'a> {
 fn prepare<'a>(
     group: &Group,
     path: &str,
-    source: Source<'a>,
+    plan: &Plan<'a>,
     made: &mut HashMap<String, Vec<Chunk<'a>>>,
 ) -> Result<(), WriteError> {
     for (name, dataset) in &group.datasets {
         let path = format!("{path}/{name}");
-        let Storage { chunk: Some(shape), nan_fill } = storage(group, name, dataset) else { continue };
+        let Storage { chunk: Some(shape), nan_fill, .. } = storage(group, name, dataset, plan.storing) else {
+            continue;
+        };
         let refused = |operation| WriteError::Library { operation, path: path.clone() };
         let raw = Raw::of(&dataset.array.data).ok_or_else(|| refused("a type without values"))?;
-        let fill = if nan_fill { f64::NAN.to_le_bytes().to_vec() } else { vec![0; raw.width] };
-        let encoded = chunks::chunks(source, &path, &raw.bytes, &fill, &shape);
+        let fill = match &dataset.array.data {
+            Data::F64(_) if nan_fill => f64::NAN.to_le_bytes().to_vec(),
+            Data::F32(_) if nan_fill => f32::NAN.to_le_bytes().to_vec(),
+            _ => vec![0; raw.width],
+        };
+        let level = plan.storing.compression;
+        let encoded = chunks::chunks((plan.source, level), &path, &raw.bytes, &fill, &shape);
         let encoded = encoded.ok_or_else(|| refused("other chunks than these"))?;
         made.insert(path, encoded);
     }
-    group.groups.iter().try_for_each(|(name, child)| prepare(child, &format!("{path}/{name}"), source, made))
+    group.groups.iter().try_for_each(|(name, child)| prepare(child, &format!("{path}/{name}"), plan, made))
 }
 
 fn write_group(target: &Handle, group: &Group, path: &str, plan: &Made<'_>) -> Result<(), WriteError> {
@@ -110,22 +118,27 @@ fn write_dataset(
     dataset: &Dataset,
     plan: &Made<'_>,
 ) -> Result<Handle, WriteError> {
-    let storage = storage(group, name, dataset);
+    let storage = storage(group, name, dataset, plan.storing);
     let chunks = plan.chunks.get(path).map_or(&[][..], Vec::as_slice);
     let written = target.create_dataset(name, &dataset.array, &storage, chunks)?;
     if dataset.is_scale {
         written.make_scale(name)?;
     }
     if storage.nan_fill {
-        written.write_attribute("_FillValue", &Array::scalar(Data::F64(vec![f64::NAN].into())))?;
+        let nan = match &dataset.array.data {
+            Data::F32(_) => Data::F32(vec![f32::NAN].into()),
+            _ => Data::F64(vec![f64::NAN].into()),
+        };
+        written.write_attribute("_FillValue", &Array::scalar(nan))?;
     }
     write_attributes(&written, &plan.signed(&dataset.attributes, path))?;
     Ok(written)
 }
 
-fn storage(group: &Group, name: &str, dataset: &Dataset) -> Storage {
-    let nan_fill = matches!(dataset.array.data, Data::F64(_)) && !dataset.is_scale && !is_coordinate(group, name);
-    Storage { chunk: chunk(&dataset.array), nan_fill }
+fn storage(group: &Group, name: &str, dataset: &Dataset, storing: Storing) -> Storage {
+    let is_float = matches!(dataset.array.data, Data::F32(_) | Data::F64(_));
+    let nan_fill = is_float && !dataset.is_scale && !is_coordinate(group, name);
+    Storage { chunk: chunk(&dataset.array, storing.chunk_bytes), compression: storing.compression, nan_fill }
 }
 
 impl Made<'_> {
@@ -149,12 +162,12 @@ fn is_coordinate(group: &Group, name: &str) -> bool {
 }
 
 /// Whole rows, so that a geometry is one piece; an array without values cannot be cut into chunks.
-fn chunk(array: &Array) -> Option<Vec<usize>> {
+fn chunk(array: &Array, bytes: usize) -> Option<Vec<usize>> {
     if array.shape.is_empty() || array.data.is_empty() {
         return None;
     }
     let row: usize = array.shape.iter().skip(1).product();
-    let rows = (CHUNK_BYTES / 8 / row.max(1)).clamp(1, array.shape[0]);
+    let rows = (bytes / 8 / row.max(1)).clamp(1, array.shape[0]);
     let mut chunk = array.shape.clone();
     chunk[0] = rows;
     Some(chunk)

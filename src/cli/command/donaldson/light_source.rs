@@ -6,10 +6,44 @@ use miette::miette;
 
 use super::material::{or_none, split};
 use crate::cli::opened::open;
+use crate::cli::output::print_message;
 use crate::dataset::{Document, Measurement, Role};
-use crate::donaldson::Light;
+use crate::donaldson::{Extend, Light};
 use crate::import::{Options, import};
 use crate::quantity::{EmissionAxis, Flag, QuantityKind, WavelengthAxis};
+
+/// Lights as commands are told them.
+#[derive(Debug, clap::Args)]
+pub(in crate::cli::command) struct Lights {
+    /// A light: D65, A, C, E, FL2, LED-B1, ... of the CIE; a text of two columns (nm, value) or another spectrum that `bbrf import`
+    /// reads; FILE.bbrf#ID. Of `predict` the second and further are compared with the first
+    #[arg(long = "light", default_value = "D65", value_name = "LIGHT")]
+    pub(in crate::cli::command) names: Vec<String>,
+    /// What a light does where it has no value: zero, or flat: it goes on at its first and last
+    #[arg(long, default_value = "zero")]
+    pub(in crate::cli::command) extend: Extend,
+}
+
+impl Lights {
+    /// Reads them, with remarks on standard error.
+    pub(in crate::cli::command) fn load(&self) -> Result<Vec<Light>, miette::Report> {
+        let one = |name: &String| {
+            let loaded = load(name)?;
+            loaded.remarks.iter().for_each(|remark| print_message(&format!("bbrf: {remark}")));
+            Ok(loaded.light)
+        };
+        self.names.iter().map(one).collect()
+    }
+
+    /// The words that tell a command the same.
+    pub(in crate::cli::command) fn words(&self) -> Vec<String> {
+        let mut words: Vec<String> = self.names.iter().flat_map(|name| ["--light".to_owned(), name.clone()]).collect();
+        if self.extend != Extend::Zero {
+            words.extend(["--extend".to_owned(), self.extend.to_string()]);
+        }
+        words
+    }
+}
 
 /// A light, with remarks on how it was read.
 pub(in crate::cli::command) struct Loaded {

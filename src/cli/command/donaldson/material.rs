@@ -9,21 +9,21 @@ use crate::donaldson::{Matrix, Separate, Separated, restored, separate};
 use crate::quantity::{Part, QuantityKind};
 
 /// A matrix that is ready for lights.
-pub(super) struct Material {
-    pub(super) name: String,
-    pub(super) measurement: Measurement,
-    pub(super) matrix: Matrix,
-    pub(super) separated: Separated,
-    pub(super) separation: Separation,
+pub(in crate::cli::command) struct Material {
+    pub(in crate::cli::command) name: String,
+    pub(in crate::cli::command) measurement: Measurement,
+    pub(in crate::cli::command) matrix: Matrix,
+    pub(in crate::cli::command) separated: Separated,
+    pub(in crate::cli::command) separation: Separation,
 }
 
 /// Where a separation comes from.
 #[derive(Default)]
-pub(super) struct Separation {
+pub(in crate::cli::command) struct Separation {
     /// The factorisation that is used; none where it was made anew.
-    pub(super) stored: Option<String>,
+    pub(in crate::cli::command) stored: Option<String>,
     /// What the user should know: why a stored one is not used.
-    pub(super) remark: Option<String>,
+    pub(in crate::cli::command) remark: Option<String>,
 }
 
 /// The file and the id of `FILE#ID`.
@@ -35,7 +35,7 @@ pub(in crate::cli::command) fn split(name: &str) -> (&str, Option<&str>) {
 }
 
 /// The matrix with its separation: the stored one, unless another number of factors is asked for or the matrix has changed since.
-pub(super) fn load(name: &str, rank: Option<usize>) -> Result<Material, miette::Report> {
+pub(in crate::cli::command) fn load(name: &str, rank: Option<usize>) -> Result<Material, miette::Report> {
     let (path, id) = split(name);
     let document = open(path.as_ref())?.document;
     let measurement = pick(&document, path, id)?.clone();

@@ -1,16 +1,19 @@
 //! `bbrf donaldson predict`: what surfaces look like under any light.
 
 mod result;
+mod sampled;
 
 use std::path::PathBuf;
 
+use super::light_source::Lights;
+use super::material;
 use super::material::Material;
-use super::{light_source, material};
 use crate::cli::exit::{CommandResult, Outcome};
 use crate::cli::output::{print_json, print_message, print_text, write_output};
 use crate::cli::overwrite::refuse_overwriting;
-use crate::donaldson::{Extend, Light, Luminescence, Observer, Prediction, Reradiation};
+use crate::donaldson::{By, Extend, Light, Luminescence, Observer, Prediction, Reradiation};
 pub(crate) use result::PredictResult;
+pub(crate) use sampled::SampledResult;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -32,10 +35,8 @@ pub(crate) struct Arguments {
     /// Matrices: FILE.bbrf#ID (FILE.bbrf where it holds one); the second and further are compared with the first
     #[arg(required = true, value_name = "FILE")]
     files: Vec<String>,
-    /// A light: D65, A, C, E, FL2, LED-B1, ... of the CIE; a text of two columns (nm, value) or another spectrum that `bbrf import`
-    /// reads; FILE.bbrf#ID. The second and further are compared with the first
-    #[arg(long = "light", default_value = "D65", value_name = "LIGHT")]
-    lights: Vec<String>,
+    #[command(flatten)]
+    lights: Lights,
     /// Degrees of the CIE observer: 2 (1931) or 10 (1964)
     #[arg(long, default_value = "2")]
     observer: Observer,
@@ -48,9 +49,16 @@ pub(crate) struct Arguments {
     /// Also predict with the factors, and without what lies below the excitation, and compare
     #[arg(long)]
     compare: bool,
-    /// What a light does where it has no value: zero, or flat: it goes on at its first and last
-    #[arg(long, default_value = "zero")]
-    extend: Extend,
+    /// How: integrals (exact, with uncertainties), product, factors or colour: samples of a step times tables, colours and spectra only;
+    /// `bbrf cost eval` measures what that loses
+    #[arg(long, default_value = "integrals", conflicts_with = "compare")]
+    by: By,
+    /// Step of the samples, nm, from 0.5 to 50
+    #[arg(long, default_value_t = 5.0, value_name = "NM")]
+    step: f64,
+    /// Single precision
+    #[arg(long)]
+    single: bool,
     /// Print JSON
     #[arg(long)]
     json: bool,
@@ -69,15 +77,11 @@ struct Predicted<'a> {
 
 pub(crate) fn run(arguments: &Arguments) -> CommandResult {
     if let Some(output) = &arguments.output {
-        let inputs = arguments.files.iter().chain(&arguments.lights).map(|name| PathBuf::from(material::split(name).0));
+        let inputs =
+            arguments.files.iter().chain(&arguments.lights.names).map(|name| PathBuf::from(material::split(name).0));
         refuse_overwriting(output, inputs)?;
     }
-    let mut lights = Vec::new();
-    for name in &arguments.lights {
-        let loaded = light_source::load(name)?;
-        loaded.remarks.iter().for_each(|remark| print_message(&format!("bbrf: {remark}")));
-        lights.push(loaded.light);
-    }
+    let lights = arguments.lights.load()?;
     let materials = arguments
         .files
         .iter()
@@ -87,16 +91,19 @@ pub(crate) fn run(arguments: &Arguments) -> CommandResult {
         let remark = one.separation.remark.as_ref();
         remark.iter().for_each(|remark| print_message(&format!("bbrf: warning: {}: {remark}", one.name)));
     }
+    if arguments.by != By::Integrals {
+        return sampled::run(arguments, &materials, &lights);
+    }
     let predicted = predict(arguments, &materials, &lights);
     for one in &predicted {
         let warnings = one.prediction.unlit.iter().map(|unlit| unlit.sentence(&one.prediction.light));
         let is_first = one.luminescence == arguments.luminescence;
         for warning in warnings.filter(|_| is_first) {
-            let level = if arguments.extend == Extend::Flat { "the light goes on flat" } else { "warning" };
+            let level = if arguments.lights.extend == Extend::Flat { "the light goes on flat" } else { "warning" };
             print_message(&format!("bbrf: {level}: {}: {warning}", one.material.name));
         }
     }
-    let result = PredictResult::new(&predicted, arguments.observer, arguments.extend);
+    let result = PredictResult::new(&predicted, arguments.observer, arguments.lights.extend);
     if let Some(path) = &arguments.output {
         write_output(path, result.csv().as_bytes())?;
         print_message(&format!("bbrf: wrote {}", path.display()));
@@ -123,7 +130,7 @@ fn predict<'a>(arguments: &Arguments, materials: &'a [Material], lights: &[Light
                     material,
                     luminescence: *luminescence,
                     surface_findings: surface.findings.clone(),
-                    prediction: surface.under(light, arguments.extend),
+                    prediction: surface.under(light, arguments.lights.extend),
                 });
             }
         }

@@ -6,7 +6,8 @@ use miette::miette;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::{Arguments, choose, finite, hint};
+use super::question::hint;
+use super::{Arguments, finite};
 use crate::cli::exit::{CommandResult, Outcome};
 use crate::cli::opened::open;
 use crate::cli::output::{print_json, print_text};
@@ -112,9 +113,12 @@ pub(super) fn run(arguments: &Arguments) -> CommandResult {
 
 fn compare(arguments: &Arguments, file: &Path) -> Result<FileComparison, miette::Report> {
     let document = open(file)?.document;
-    let measurement = choose(&document, arguments.measurement.as_deref(), file)?;
-    let options =
-        FitOptions { reduction: arguments.reduce, assume_reference: arguments.reference, ..FitOptions::default() };
+    let measurement = arguments.question.choose(&document, file)?;
+    let options = FitOptions {
+        reduction: arguments.question.reduce,
+        assume_reference: arguments.question.reference,
+        ..FitOptions::default()
+    };
     let comparison = compare_measurement(&document, measurement, &options)
         .map_err(|error| miette!("{}: {error}{}", file.display(), hint(&error)))?;
     Ok(result(file, measurement.id.as_str(), &comparison))

@@ -1,5 +1,7 @@
 //! Settings of a fit as they are spelled on the command line.
 
+use std::fmt;
+
 use crate::dataset::Effect;
 use crate::fit::{Loss, Share};
 
@@ -13,6 +15,29 @@ pub(super) struct Bounds {
     parameter: String,
     low: f64,
     high: f64,
+}
+
+impl fmt::Display for Sharing {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self.0 {
+            Some(Share::Shape) => "shape",
+            Some(Share::ShapeAndIntensity) => "shape-and-intensity",
+            None => "nothing",
+        })
+    }
+}
+
+impl fmt::Display for Bounds {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}={}..{}", self.parameter, self.low, self.high)
+    }
+}
+
+impl fmt::Display for Nuisance {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}={}", self.effect.map_or("wavelength-shift", Effect::name), self.value)?;
+        if self.sigma > 0.0 { write!(f, ",{}", self.sigma) } else { Ok(()) }
+    }
 }
 
 pub(super) fn share(text: &str) -> Result<Sharing, String> {
@@ -30,6 +55,11 @@ pub(super) fn loss(text: &str) -> Result<Loss, String> {
         .into_iter()
         .find(|loss| loss.name() == text)
         .ok_or_else(|| "expected `squares`, `huber` or `tukey`".to_owned())
+}
+
+pub(super) fn tolerance(text: &str) -> Result<f64, String> {
+    let number = text.parse::<f64>().ok().filter(|x| x.is_finite() && *x > 0.0);
+    number.ok_or_else(|| "expected a number above 0, as 1e-8".to_owned())
 }
 
 pub(super) fn bounds(text: &str) -> Result<Bounds, String> {
