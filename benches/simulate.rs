@@ -4,6 +4,7 @@
 //!
 //! `BBRF_REPEATS=5` makes fewer.
 #![allow(missing_docs, clippy::unwrap_used)]
+#![allow(unsafe_code, reason = "the peer of the product of matrices is called by pointers")]
 
 #[path = "../tests/common/bispectral.rs"]
 mod bispectral;
@@ -13,9 +14,11 @@ use std::process::Command;
 use std::time::Instant;
 
 use bbrf::donaldson::{Extend, Light, Observer};
-use bbrf::simulate::convex::{Component, Lighting, Renderer, Scene, Sphere, render_dense};
-use bbrf::simulate::{Film, Spectral};
+use bbrf::simulate::convex::{Colours, Component, Lighting, Renderer, Scene, Sphere, render_dense};
+use bbrf::simulate::{Film, Spectral, reradiate};
 use bbrf::terms::{Denominator, Distribution, TorranceSparrow};
+use ndarray::Array2;
+use rayon::prelude::*;
 
 const SIDE: usize = 1128;
 
@@ -49,12 +52,84 @@ fn units(a: &Film, b: &Film) -> u32 {
     pairs.map(|(a, b)| a.to_bits().abs_diff(b.to_bits())).max().unwrap_or(0)
 }
 
+/// The diffuse term of a sphere under parallel light and nothing else, as a loop written for it alone.
+struct Diffuse<'a> {
+    row: usize,
+    towards: [f64; 3],
+    colour: [f64; 3],
+    out: &'a mut [f32],
+}
+
+impl pulp::WithSimd for Diffuse<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, _: S) {
+        let radius = SIDE as f64 / 2.0;
+        let (up, inverse) = (radius - (self.row as f64 + 0.5), 1.0 / radius);
+        let square = radius * radius - up * up;
+        let half = square.max(0.0).sqrt();
+        let first = (radius - half - 0.5).ceil().max(0.0) as usize;
+        let last = ((radius + half - 0.5).floor() as usize + 1).min(SIDE);
+        let (red, rest) = self.out.split_at_mut(SIDE);
+        let (green, blue) = rest.split_at_mut(SIDE);
+        for plane in [&mut *red, &mut *green, &mut *blue] {
+            plane[..first].fill(0.0);
+            plane[last..].fill(0.0);
+        }
+        let pixels = red[first..last].iter_mut().zip(&mut green[first..last]).zip(&mut blue[first..last]);
+        let beside = up * inverse * self.towards[1];
+        for (column, ((red, green), blue)) in pixels.enumerate() {
+            let right = (first as i32 + column as i32) as f64 + (0.5 - radius);
+            let depth = square - right * right;
+            let z = if depth > 0.0 { depth.sqrt() * inverse } else { 0.0 };
+            let cosine = right * inverse * self.towards[0] + beside + z * self.towards[2];
+            let lit = if (cosine > 0.0) & (z > 0.0) { cosine } else { 0.0 };
+            *red = (lit * self.colour[0]) as f32;
+            *green = (lit * self.colour[1]) as f32;
+            *blue = (lit * self.colour[2]) as f32;
+        }
+    }
+}
+
+/// A scene of one effect beside the loop written for it alone.
+fn one_effect(repeats: usize, sphere: Sphere, film: &mut Film, pools: &[rayon::ThreadPool; 2]) {
+    let (towards, colour) = ([0.5, 0.0, 0.75_f64.sqrt()], [20.0, 30.0, 10.0]);
+    let colours = Colours { luminescent: [0.0; 3], diffuse: colour, specular: [0.0; 3] };
+    let scene = Scene::new(sphere, Lighting::Directional(towards), colours, shining(0.05)).unwrap();
+    let (renderer, arch) = (Renderer::default(), pulp::Arch::new());
+    let mut own = vec![0.0_f32; 3 * SIDE * SIDE];
+    println!("diffuse term alone, light at 30 degrees");
+    for (threads, pool) in [1, 2].into_iter().zip(pools) {
+        // In turns, so that what else the machine does falls on both.
+        let (mut of_scene, mut by_hand) = (Vec::new(), Vec::new());
+        for _ in 0..=repeats {
+            of_scene.push(time(1, || {
+                pool.install(|| renderer.render(&scene, Component::Total, black_box(&mut *film)).unwrap());
+            }));
+            by_hand.push(time(1, || {
+                pool.install(|| {
+                    own.par_chunks_mut(3 * SIDE).with_min_len(8).enumerate().for_each(|(row, out)| {
+                        arch.dispatch(Diffuse { row, towards, colour, out: black_box(out) });
+                    });
+                });
+            }));
+        }
+        for (name, mut times) in [("scene", of_scene), ("loop written for it", by_hand)] {
+            times.sort_by(|a, b| a.0.total_cmp(&b.0));
+            println!("  {name:<34}{:9.2} ({:7.2})   {threads} threads", times[times.len() / 2].0, times[0].0);
+        }
+    }
+    let most = film.numbers().iter().zip(&own).map(|(a, b)| a.to_bits().abs_diff(b.to_bits())).max().unwrap_or(0);
+    println!("  most by which they differ          {most} units in the last place");
+}
+
 const NUMPY: &str = "
 import time, sys, numpy as np
-count, rows, columns, repeats = map(int, sys.argv[1:])
+count, rows, columns, repeats = map(int, sys.argv[1:5])
 rng = np.random.default_rng(1)
-light, dense = rng.random((count, rows)), rng.random((rows, columns))
-out = np.empty((count, columns))
+light, dense = rng.random((count, rows)).astype(sys.argv[5]), rng.random((rows, columns)).astype(sys.argv[5])
+out = np.empty((count, columns), sys.argv[5])
 times = []
 for _ in range(repeats):
     begin = time.perf_counter()
@@ -105,21 +180,70 @@ fn main() {
         renderer.render(&scene, Component::Total, &mut other).unwrap();
         println!("  most by which the last two differ  {} units in the last place", units(&film, &other));
     }
+    one_effect(repeats, sphere, &mut other, &pools);
     let black = Instant::now();
     let mut fresh = Film::new(SIDE, SIDE).unwrap();
     let scene = Scene::new(sphere, thirty, spectral.colours(), shining(0.05)).unwrap();
     pools[1].install(|| Renderer::default().render(&scene, Component::Total, black_box(&mut fresh)).unwrap());
     println!("first image on a new film, 30 degrees, 2 threads {:9.2}", black.elapsed().as_secs_f64() * 1e3);
-    if let Ok(python) = std::env::var("BBRF_PYTHON") {
-        // As many pixels as the sphere covers.
-        let pixels = film.numbers().chunks(3 * SIDE).map(|row| row[..SIDE].iter().filter(|x| **x > 0.0).count());
-        let sizes = [pixels.sum(), excitation.len(), emission.len(), repeats.div_ceil(8)];
-        for threads in ["1", "2"] {
-            let mut numpy = Command::new(&python);
-            numpy.args(["-c", NUMPY]).args(sizes.map(|size: usize| size.to_string()));
-            let found = numpy.env("OPENBLAS_NUM_THREADS", threads).output().unwrap();
-            let text = String::from_utf8_lossy(&found.stdout).into_owned();
-            println!("NumPy, the product alone for the lit pixels, {threads} threads: {}", text.trim());
-        }
+    // As many pixels as the sphere covers.
+    let lit = film.numbers().chunks(3 * SIDE).map(|row| row[..SIDE].iter().filter(|x| **x > 0.0).count()).sum();
+    products::<f64>("f8", [lit, excitation.len(), emission.len()], repeats.div_ceil(4), &pools);
+    products::<f32>("f4", [lit, excitation.len(), emission.len()], repeats.div_ceil(4), &pools);
+}
+
+/// The product alone for the lit pixels: our own, that of a crate of hand-written vector code, and NumPy's.
+fn products<A>(kind: &str, [count, rows, columns]: [usize; 3], repeats: usize, pools: &[rayon::ThreadPool; 2])
+where
+    A: ndarray::LinalgScalar + Send + Sync + From<f32>,
+{
+    let any = |(i, j): (usize, usize)| A::from(((i * 31 + j * 17) % 97) as f32 / 97.0);
+    let (light, dense) = (Array2::from_shape_fn((count, rows), any), Array2::from_shape_fn((rows, columns), any));
+    let mut out = Array2::<A>::zeros((count, columns));
+    println!("{count} spectra times {rows} x {columns}, {kind}");
+    for (threads, pool) in [1, 2].into_iter().zip(pools) {
+        let (median, least) = time(repeats, || {
+            pool.install(|| {
+                reradiate(light.as_slice().unwrap(), dense.view(), black_box(out.as_slice_mut().unwrap())).unwrap()
+            });
+        });
+        println!("  reradiate  {threads} threads             {median:9.2} ms, least {least:.2}");
+        let parallelism = if threads == 1 { gemm::Parallelism::None } else { gemm::Parallelism::Rayon(threads) };
+        let (zero, one) = (A::zero(), A::one());
+        let (median, least) = time(repeats, || {
+            let (to, a, b) = (black_box(out.as_mut_ptr()), light.as_ptr(), dense.as_ptr());
+            let [c, r] = [columns, rows].map(usize::cast_signed);
+            // Sound: the three are in standard order and of these sizes.
+            let work = || unsafe {
+                gemm::gemm(
+                    count,
+                    columns,
+                    rows,
+                    to,
+                    1,
+                    c,
+                    false,
+                    a,
+                    1,
+                    r,
+                    b,
+                    1,
+                    c,
+                    zero,
+                    one,
+                    false,
+                    false,
+                    false,
+                    parallelism,
+                );
+            };
+            work();
+        });
+        println!("  crate gemm {threads} threads             {median:9.2} ms, least {least:.2}");
+        let Ok(python) = std::env::var("BBRF_PYTHON") else { continue };
+        let mut numpy = Command::new(&python);
+        numpy.args(["-c", NUMPY]).args([count, rows, columns, repeats].map(|size| size.to_string())).arg(kind);
+        let found = numpy.env("OPENBLAS_NUM_THREADS", threads.to_string()).output().unwrap();
+        println!("  NumPy      {threads} threads             {}", String::from_utf8_lossy(&found.stdout).trim_end());
     }
 }

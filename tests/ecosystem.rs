@@ -4,11 +4,14 @@
 #![allow(clippy::unwrap_used, reason = "a test")]
 
 mod documents;
+#[path = "common/layers.rs"]
+mod layers;
 
 use std::path::Path;
 use std::process::Command;
 
 use bbrf::container::{read_file, write_file};
+use bbrf::simulate::image::{Primaries, write_exr};
 
 fn run(program: &str, arguments: &[&str], files: &[&Path]) -> String {
     let output = Command::new(program).args(arguments).args(files).output().unwrap();
@@ -41,5 +44,31 @@ fn a_repacked_file_has_the_same_digest() {
         let opened = read_file(&packed).unwrap();
         assert_eq!(opened.computed_digest, digest, "{name}");
         assert_eq!(opened.mismatched, Vec::<String>::new(), "{name}");
+    }
+}
+
+#[test]
+#[ignore = "needs the Python package OpenEXR; make test-ecosystem"]
+fn the_openexr_project_reads_every_layer_to_the_last_bit() {
+    let python = std::env::var("BBRF_PYTHON").unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.exr");
+    let notes = [("seed".to_owned(), "7".to_owned())];
+    let file = std::fs::File::create(&path).unwrap();
+    write_exr(layers::SIZE, &layers::layers(), Primaries::Xyz, &notes, std::io::BufWriter::new(file)).unwrap();
+    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/python/opens_exr.py");
+    let parts: Vec<serde_json::Value> = serde_json::from_str(&run(&python, &[], &[&script, &path])).unwrap();
+    assert_eq!(parts.len(), layers::layers().len());
+    for (part, layer) in parts.iter().zip(layers::layers()) {
+        assert_eq!(part["header"]["name"], layer.name);
+        assert_eq!(part["header"]["spectralLayoutVersion"], "1.0");
+        assert_eq!(part["header"]["comments"], "{\"seed\":\"7\"}");
+        assert_eq!(part["kinds"], serde_json::json!(["float32"]));
+        assert_eq!(part["shapes"], serde_json::json!([[layers::SIZE.1, layers::SIZE.0]]));
+        assert_eq!(part["channels"].as_object().unwrap().len(), layer.channels.len());
+        for channel in layer.channels {
+            let bits: Vec<u32> = channel.values.iter().map(|value| value.to_bits()).collect();
+            assert_eq!(part["channels"][&channel.name], serde_json::json!(bits), "{}", channel.name);
+        }
     }
 }

@@ -36,6 +36,26 @@ impl Film {
         Ok(Self { width, height, numbers: vec![0.0; 3 * width * height] })
     }
 
+    /// An image from its pixels, by column and row.
+    ///
+    /// # Errors
+    /// As [`Film::new`].
+    pub fn from_pixels(
+        width: usize,
+        height: usize,
+        mut pixel: impl FnMut(usize, usize) -> [f32; 3],
+    ) -> Result<Self, NoFilm> {
+        let mut film = Self::new(width, height)?;
+        for (row, planes) in film.numbers.chunks_exact_mut(3 * width).enumerate() {
+            for column in 0..width {
+                for (plane, value) in pixel(column, row).into_iter().enumerate() {
+                    planes[plane * width + column] = value;
+                }
+            }
+        }
+        Ok(film)
+    }
+
     /// Pixels in a row.
     #[must_use]
     pub fn width(&self) -> usize {

@@ -7,9 +7,13 @@ use rayon::prelude::*;
 use super::lighting::{Lighting, Parallel, Point, Rays};
 use super::lobe::Lobe;
 use super::scene::{Colours, Scene};
-use super::shade::{Frame, LANES, Lanes};
+use super::shade::{Frame, LANES};
 use crate::simulate::film::Film;
 use crate::simulate::spectral::Spectral;
+
+/// Pixels whose sums stay in registers.
+const AT_ONCE: usize = 8;
+type Group = [f64; AT_ONCE];
 
 /// Draws the total image with the spectra in full; the colours of the scene are not used. False where the specular term is one
 /// that [`super::Renderer`] draws by the terms themselves; the film is then as it was.
@@ -55,13 +59,18 @@ impl<R: Rays> pulp::WithSimd for DenseRow<'_, R> {
         let width = self.out.len() / 3;
         self.out.fill(0.0);
         let columns = self.dense.scene.sphere.columns(self.row, width);
-        let mut incident = vec![[0.0; LANES]; self.dense.spectral.excitation.len()];
+        let mut incident = vec![[0.0; AT_ONCE]; self.dense.spectral.excitation.len()];
         for first in columns.clone().step_by(LANES) {
-            let pixels = self.dense.pixels(self.row, first, &mut incident);
-            let count = LANES.min(columns.end - first);
-            for c in 0..3 {
-                for lane in 0..count {
-                    self.out[c * width + first + lane] = pixels[c][lane] as f32;
+            let [lit, shine] = self.dense.frame.shares(self.row, first);
+            let groups = lit.as_chunks().0.iter().zip(shine.as_chunks().0);
+            for (group, (lit, shine)) in groups.enumerate() {
+                let first = first + group * AT_ONCE;
+                let count = AT_ONCE.min(columns.end.saturating_sub(first));
+                let pixels = self.dense.pixels(lit, shine, &mut incident);
+                for c in 0..3 {
+                    for lane in 0..count {
+                        self.out[c * width + first + lane] = pixels[c][lane] as f32;
+                    }
                 }
             }
         }
@@ -71,30 +80,29 @@ impl<R: Rays> pulp::WithSimd for DenseRow<'_, R> {
 impl<R: Rays> Dense<'_, R> {
     /// X, Y and Z of a few pixels. Each has its own incident spectrum; that they differ by a factor only is not made use of.
     #[inline(always)]
-    fn pixels(&self, row: usize, first: usize, incident: &mut [Lanes]) -> [Lanes; 3] {
+    fn pixels(&self, lit: &Group, shine: &Group, incident: &mut [Group]) -> [Group; 3] {
         let spectral = self.spectral;
-        let [lit, shine] = self.frame.shares(row, first);
         for (incident, e) in incident.iter_mut().zip(&spectral.excitation) {
-            for lane in 0..LANES {
+            for lane in 0..AT_ONCE {
                 incident[lane] = e * lit[lane];
             }
         }
-        let Some(density) = spectral.density.as_slice() else { return [[0.0; LANES]; 3] };
-        let mut out = [[0.0; LANES]; 3];
+        let Some(density) = spectral.density.as_slice() else { return [[0.0; AT_ONCE]; 3] };
+        let mut out = [[0.0; AT_ONCE]; 3];
         let rows = density.chunks_exact(spectral.excitation.len());
         let emissions = spectral.irradiance.iter().zip(&spectral.elastic).zip(&spectral.weights);
         for (density, ((e, elastic), weights)) in rows.zip(emissions) {
-            let mut radiance = [0.0; LANES];
+            let mut radiance = [0.0; AT_ONCE];
             for (density, incident) in density.iter().zip(incident.iter()) {
-                for lane in 0..LANES {
+                for lane in 0..AT_ONCE {
                     radiance[lane] += density * incident[lane];
                 }
             }
-            for lane in 0..LANES {
+            for lane in 0..AT_ONCE {
                 radiance[lane] += e * (elastic * lit[lane] + self.scene.specular.intensity * shine[lane]);
             }
             for c in 0..3 {
-                for lane in 0..LANES {
+                for lane in 0..AT_ONCE {
                     out[c][lane] += weights[c] * radiance[lane];
                 }
             }

@@ -18,7 +18,7 @@ pub(super) fn fill<R: Rays>(
     out.fill(0.0);
     let width = out.len() / 3;
     for column in scene.sphere.columns(row, width) {
-        let normal = scene.sphere.normal(scene.sphere.right(column), scene.sphere.up(row));
+        let normal = scene.sphere.normal(scene.sphere.right(column as f64 + 0.5), scene.sphere.up(row));
         if normal[2] <= 0.0 {
             continue;
         }

@@ -1,15 +1,25 @@
 //! The inner loop: a few pixels of a row at once, in arithmetic that the compiler turns into vector instructions.
 #![allow(clippy::needless_range_loop, reason = "a lane is an index into several arrays, and is told to be one")]
 
-use super::lighting::Rays;
+use super::lighting::{Beam, Rays};
 use super::lobe::Lobe;
 use super::scene::{Colours, Scene};
 use super::sphere::Sphere;
-use crate::simulate::vector::{dot, minus};
+use crate::simulate::vector::{Vector, dot, minus};
 use crate::terms::Denominator;
 
-/// Pixels at once.
-pub(super) const LANES: usize = 8;
+/// Pixels at once: so many that the compiler sees a loop, and makes vectors of it, and does not write it out.
+pub(super) const LANES: usize = 32;
+/// Columns from the first: a table, for whole numbers wider than 32 bits become floating ones slowly.
+const STEPS: Lanes = {
+    let mut steps = [0.0; LANES];
+    let mut lane = 0;
+    while lane < LANES {
+        steps[lane] = lane as f64;
+        lane += 1;
+    }
+    steps
+};
 pub(super) type Lanes = [f64; LANES];
 
 /// Below this cosine of incidence or viewing the lobe is never left out: what G over the denominator may grow to is bounded
@@ -34,6 +44,24 @@ pub(super) struct Frame<R> {
     has_lobe: bool,
     /// Square of the cosine of phi beyond which the lobe is not seen; 2 where it is never seen, 0 where it may be everywhere.
     cut2: f64,
+}
+
+/// A point of the surface.
+struct Point {
+    normal: Vector,
+    beam: Beam,
+    /// cos(theta_i).
+    cos_i: f64,
+    /// Light falls on it, and it is seen.
+    is_lit: bool,
+}
+
+impl Point {
+    /// cos(theta_i) times the strength of the light.
+    #[inline(always)]
+    fn lit(&self) -> f64 {
+        if self.is_lit { self.cos_i * self.beam.strength } else { 0.0 }
+    }
 }
 
 /// One row of an image, as what is compiled for several kinds of processor.
@@ -81,106 +109,150 @@ impl<R: Rays> Frame<R> {
             plane[..columns.start].fill(0.0);
             plane[columns.end..].fill(0.0);
         }
-        let mut first = columns.start;
-        while first + LANES <= columns.end {
-            let [r, g, b] = self.pixels(row, first);
-            red[first..first + LANES].copy_from_slice(&r);
-            green[first..first + LANES].copy_from_slice(&g);
-            blue[first..first + LANES].copy_from_slice(&b);
-            first += LANES;
+        let up = self.sphere.up(row);
+        let mut middle = columns.start as f64 + 0.5;
+        let planes = [&mut red[columns.clone()], &mut green[columns.clone()], &mut blue[columns]];
+        if !self.has_lobe {
+            // A scene without a lobe pays nothing for it.
+            return self.diffuse(up, middle, planes);
         }
-        if first < columns.end {
-            let last = self.pixels(row, first);
-            let left = columns.end - first;
-            for (plane, values) in [red, green, blue].into_iter().zip(&last) {
-                plane[first..columns.end].copy_from_slice(&values[..left]);
-            }
+        let [mut red, mut green, mut blue] = planes.map(|plane| plane.chunks_exact_mut(LANES));
+        for ((red, green), blue) in (&mut red).zip(&mut green).zip(&mut blue) {
+            self.pixels(up, middle, [red, green, blue]);
+            middle += LANES as f64;
+        }
+        let mut last = [[0.0; LANES]; 3];
+        let [r, g, b] = &mut last;
+        self.pixels(up, middle, [r, g, b]);
+        for (rest, last) in [red, green, blue].into_iter().zip(&last) {
+            let rest = rest.into_remainder();
+            rest.copy_from_slice(&last[..rest.len()]);
         }
     }
 
-    /// Pixels from a column on. Those beside the sphere are black.
+    /// Any number of pixels in a row where no lobe is seen.
     #[inline(always)]
-    fn pixels(&self, row: usize, first: usize) -> [[f32; LANES]; 3] {
-        let (up, from) = (self.sphere.up(row), self.sphere.right(first));
-        let (cos_i, lit, is_shining) = self.cosines(up, from);
-        let mut out = [[0.0; LANES]; 3];
-        if !is_shining {
-            for c in 0..3 {
-                for lane in 0..LANES {
-                    out[c][lane] = (lit[lane] * self.base[c]) as f32;
-                }
-            }
-            return out;
+    fn diffuse(&self, up: f64, middle: f64, [red, green, blue]: [&mut [f32]; 3]) {
+        for (lane, ((red, green), blue)) in red.iter_mut().zip(green).zip(blue).enumerate() {
+            let lit = self.point(middle + f64::from(lane as i32), up).lit();
+            *red = (lit * self.base[0]) as f32;
+            *green = (lit * self.base[1]) as f32;
+            *blue = (lit * self.base[2]) as f32;
         }
-        let shine = self.lobe(up, from, &cos_i);
-        for c in 0..3 {
-            for lane in 0..LANES {
-                out[c][lane] = (lit[lane] * self.base[c] + shine[lane] * self.shine[c]) as f32;
+    }
+
+    /// `LANES` pixels of a row. Those beside the sphere are black.
+    #[inline(always)]
+    fn pixels(&self, up: f64, middle: f64, [red, green, blue]: [&mut [f32]; 3]) {
+        let (mut cos_v, mut shining) = ([0.0; LANES], 0);
+        for (lane, ((red, green), blue)) in red.iter_mut().zip(&mut *green).zip(&mut *blue).enumerate().take(LANES) {
+            let point = self.point(middle + STEPS[lane], up);
+            let lit = point.lit();
+            *red = (lit * self.base[0]) as f32;
+            *green = (lit * self.base[1]) as f32;
+            *blue = (lit * self.base[2]) as f32;
+            cos_v[lane] = point.normal[2];
+            shining += u64::from(self.may_shine(&point));
+        }
+        if shining == 0 {
+            return;
+        }
+        let [lit, shine] = self.lobe(up, middle, &cos_v);
+        for (c, plane) in [red, green, blue].into_iter().enumerate() {
+            for (lane, value) in plane.iter_mut().enumerate().take(LANES) {
+                *value = (lit[lane] * self.base[c] + shine[lane] * self.shine[c]) as f32;
             }
         }
-        out
     }
 
     /// What the diffuse terms and the specular term without its intensity are multiplied by, from a column on.
     #[inline(always)]
     pub(super) fn shares(&self, row: usize, first: usize) -> [Lanes; 2] {
-        let (up, from) = (self.sphere.up(row), self.sphere.right(first));
-        let (cos_i, lit, is_shining) = self.cosines(up, from);
-        [lit, if is_shining { self.lobe(up, from, &cos_i) } else { [0.0; LANES] }]
-    }
-
-    /// cos(theta_i), -1 where no light falls or no sphere is; that times the strength of the light, 0 there; and whether the lobe
-    /// may be seen at one of the pixels.
-    #[inline(always)]
-    fn cosines(&self, up: f64, from: f64) -> (Lanes, Lanes, bool) {
-        let (mut cos_i, mut lit, mut shining) = ([0.0; LANES], [0.0; LANES], 0);
+        let (up, middle) = (self.sphere.up(row), first as f64 + 0.5);
+        let mut cos_v = [0.0; LANES];
         for lane in 0..LANES {
-            let normal = self.sphere.normal(from + lane as f64, up);
-            let beam = self.rays.beam(normal);
-            let (cosine, cos_v) = (dot(normal, beam.towards), normal[2]);
-            let is_lit = (cosine >= 0.0) & (cos_v > 0.0);
-            cos_i[lane] = if is_lit { cosine } else { -1.0 };
-            lit[lane] = if is_lit { cosine * beam.strength } else { 0.0 };
-            // N.Q = (N.L + N.V) / |L + V|, compared without the root.
-            let sum = cosine + cos_v;
-            let is_near = sum * sum >= self.cut2 * self.rays.length2(&beam);
-            let is_steep = (cosine < STEEPEST) | (cos_v < STEEPEST);
-            shining += u64::from(is_lit & (is_near | is_steep & self.has_lobe));
+            cos_v[lane] = self.point(middle + STEPS[lane], up).normal[2];
         }
-        (cos_i, lit, shining > 0)
+        self.lobe(up, middle, &cos_v)
     }
 
-    /// D F G over the denominator; 0 where `cos_i` is below 0.
+    /// The surface at the middle of a pixel, by its place on the film.
     #[inline(always)]
-    fn lobe(&self, up: f64, from: f64, cos_i: &Lanes) -> Lanes {
+    fn point(&self, middle: f64, up: f64) -> Point {
+        self.seen(self.sphere.normal(self.sphere.right(middle), up))
+    }
+
+    #[inline(always)]
+    fn seen(&self, normal: Vector) -> Point {
+        let beam = self.rays.beam(normal);
+        let cos_i = dot(normal, beam.towards);
+        Point { normal, beam, cos_i, is_lit: (cos_i >= 0.0) & (normal[2] > 0.0) }
+    }
+
+    /// Whether the lobe may be seen at a point, in a scene that has one.
+    #[inline(always)]
+    fn may_shine(&self, point: &Point) -> bool {
+        // N.Q = (N.L + N.V) / |L + V|, compared without the root.
+        let (cos_i, cos_v) = (point.cos_i, point.normal[2]);
+        let sum = cos_i + cos_v;
+        let is_near = sum * sum >= self.cut2 * self.rays.length2(&point.beam);
+        point.is_lit & (is_near | (cos_i < STEEPEST) | (cos_v < STEEPEST))
+    }
+
+    /// cos(theta_i) and D F G over the denominator, both times the strength of the light; 0 where no light falls or no sphere is.
+    /// In passes without a choice inside, which would keep the compiler from making vectors of them.
+    #[inline(always)]
+    fn lobe(&self, up: f64, middle: f64, cos_v: &Lanes) -> [Lanes; 2] {
+        let (mut s, mut cos_phi, mut cos_i) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
+        let (mut twice_ratio, mut factor, mut lit) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
+        for lane in 0..LANES {
+            let normal = self.sphere.normal_with(self.sphere.right(middle + STEPS[lane]), up, cos_v[lane]);
+            let point = self.seen(normal);
+            let half = self.rays.half(&point.beam);
+            let apart = minus(normal, half.q);
+            s[lane] = 0.25 * dot(apart, apart);
+            lit[lane] = point.lit();
+            cos_i[lane] = if point.is_lit { point.cos_i } else { -1.0 };
+            cos_phi[lane] = (cos_i[lane] + cos_v[lane]) * half.inverse;
+            twice_ratio[lane] = 2.0 * cos_phi[lane] / half.cos_q;
+            factor[lane] = half.fresnel * point.beam.strength;
+        }
+        let angular = self.angular(&cos_i, cos_v, &twice_ratio);
+        let d = self.lobe.values(&s, &cos_phi);
         let mut shine = [0.0; LANES];
         for lane in 0..LANES {
-            let normal = self.sphere.normal(from + lane as f64, up);
-            let beam = self.rays.beam(normal);
-            let half = self.rays.half(&beam);
-            let (cos_i, cos_v) = (cos_i[lane], normal[2]);
-            let cos_phi = (cos_i + cos_v) * half.inverse;
-            let apart = minus(normal, half.q);
-            let d = self.lobe.value(0.25 * dot(apart, apart), cos_phi);
-            let angular = self.angular(cos_i, cos_v, 2.0 * cos_phi / half.cos_q);
-            let value = d * half.fresnel * angular * beam.strength;
-            shine[lane] = if cos_i >= 0.0 { value } else { 0.0 };
+            let value = d[lane] * factor[lane] * angular[lane];
+            shine[lane] = if cos_i[lane] >= 0.0 { value } else { 0.0 };
         }
-        shine
+        [lit, shine]
     }
 
     /// G over the denominator, in a form that keeps its one-sided limit where light grazes: a division by 0 gives an infinite
     /// number, and the other is taken.
     #[inline(always)]
-    fn angular(&self, cos_i: f64, cos_v: f64, twice_ratio: f64) -> f64 {
-        let over = |cosine: f64, other: f64| {
-            let inverse = 1.0 / cosine;
-            inverse.min(twice_ratio * (other * inverse).min(1.0))
-        };
+    fn angular(&self, cos_i: &Lanes, cos_v: &Lanes, twice_ratio: &Lanes) -> Lanes {
         match self.denominator {
-            Denominator::CosThetaI => over(cos_i, cos_v),
-            Denominator::CosThetaV => over(cos_v, cos_i),
-            Denominator::CosICosV => (1.0 / (cos_i * cos_v)).min(twice_ratio / cos_i.max(cos_v)),
+            Denominator::CosThetaI => over_one(cos_i, cos_v, twice_ratio),
+            Denominator::CosThetaV => over_one(cos_v, cos_i, twice_ratio),
+            Denominator::CosICosV => {
+                let mut over = [0.0; LANES];
+                for lane in 0..LANES {
+                    let (cos_i, cos_v) = (cos_i[lane], cos_v[lane]);
+                    over[lane] = (1.0 / (cos_i * cos_v)).min(twice_ratio[lane] / cos_i.max(cos_v));
+                }
+                over
+            }
         }
     }
+}
+
+/// G over one cosine.
+#[inline(always)]
+fn over_one(cosine: &Lanes, other: &Lanes, twice_ratio: &Lanes) -> Lanes {
+    let mut over = [0.0; LANES];
+    for lane in 0..LANES {
+        let inverse = 1.0 / cosine[lane];
+        over[lane] = inverse.min(twice_ratio[lane] * (other[lane] * inverse).min(1.0));
+    }
+    over
 }

@@ -59,10 +59,10 @@ impl Sphere {
         self.centre[1] - (row as f64 + 0.5)
     }
 
-    /// How far a column lies to the right of the centre, pixels.
+    /// How far the middle of a column lies to the right of the centre, pixels; `middle` is the number of the column and a half.
     #[inline(always)]
-    pub(super) fn right(&self, column: usize) -> f64 {
-        (column as f64 + 0.5) - self.centre[0]
+    pub(super) fn right(&self, middle: f64) -> f64 {
+        middle - self.centre[0]
     }
 
     /// The normal at a pixel whose middle is so far from the centre. Where z is 0 the pixel is not on the sphere: one that is
@@ -71,7 +71,15 @@ impl Sphere {
     #[inline(always)]
     pub(super) fn normal(&self, right: f64, up: f64) -> Vector {
         let depth = (self.radius * self.radius - up * up) - right * right;
-        [right * self.inverse, up * self.inverse, depth.max(0.0).sqrt() * self.inverse]
+        // As a choice, which is one instruction; `max` looks for NaN, too.
+        let depth = if depth > 0.0 { depth } else { 0.0 };
+        self.normal_with(right, up, depth.sqrt() * self.inverse)
+    }
+
+    /// The normal where its z is known: a root is dear.
+    #[inline(always)]
+    pub(super) fn normal_with(&self, right: f64, up: f64, z: f64) -> Vector {
+        [right * self.inverse, up * self.inverse, z]
     }
 
     /// Columns of a row outside which the sphere is not; one more at each end than it needs, for the rounding of the root.
