@@ -24,7 +24,8 @@ fn a_white_body_in_white_light_from_all_around_cannot_be_seen() {
     // A hollow of many bodies, too: every path leaves in the end.
     scene.bodies = vec![ball([-1.0, 0.0, 0.0], 1.0, 0), ball([1.0, 0.0, 0.0], 1.0, 0), floor(-1.0, 0)];
     let picture = draw(&scene, &everything(&scene));
-    let seen: Vec<f64> = luminance(&picture).iter().map(|value| f64::from(*value)).filter(|value| *value != 0.0).collect();
+    let seen: Vec<f64> =
+        luminance(&picture).iter().map(|value| f64::from(*value)).filter(|value| *value != 0.0).collect();
     let stated = picture.noise.iter().map(|value| f64::from(*value).powi(2)).sum::<f64>().sqrt() / seen.len() as f64;
     let mean = seen.iter().sum::<f64>() / seen.len() as f64;
     assert!(seen.len() > 150 && stated < 0.02);
@@ -35,8 +36,14 @@ fn a_white_body_in_white_light_from_all_around_cannot_be_seen() {
 #[test]
 fn a_closed_cavity_is_the_sum_of_its_series() {
     for (material, label) in [(grey(0.6), "grey"), (glowing("glow", 0.5, 560.0, 0.4), "glowing")] {
-        let mut scene = scene(vec![ball([0.0; 3], 2.0, 0)], vec![material.clone()], vec![lamp("lamp", Place::Point([0.0; 3], 1.0), [2.0, 1.0, 0.5])]);
-        scene.camera = Camera::new([0.5, 0.0, 0.1], [2.0, 0.3, 0.0], [0.0, 0.0, 1.0], Projection::Perspective { width_deg: 80.0 }).unwrap();
+        let mut scene = scene(
+            vec![ball([0.0; 3], 2.0, 0)],
+            vec![material.clone()],
+            vec![lamp("lamp", Place::Point([0.0; 3], 1.0), [2.0, 1.0, 0.5])],
+        );
+        scene.camera =
+            Camera::new([0.5, 0.0, 0.1], [2.0, 0.3, 0.0], [0.0, 0.0, 1.0], Projection::Perspective { width_deg: 80.0 })
+                .unwrap();
         scene.size = (6, 6);
         scene.samples = 200;
         for bounces in [Bounces::Most(0), Bounces::Most(1), Bounces::Most(4), Bounces::All] {
@@ -61,13 +68,19 @@ fn series(scene: &Scene, strength: f64, bounces: Bounces) -> Vec<f64> {
     let (surface, count) = (&scene.materials[0].surface, nm.len());
     let step = scene.grid.step();
     let at = |j: usize| if surface.emission_nm.len() == 2 { surface.elastic[0] } else { surface.elastic[j] };
-    let mut incident: Vec<f64> = nm.iter().map(|nm| strength * value(scene.sources[0].light.nm(), scene.sources[0].light.values(), *nm)).collect();
+    let mut incident: Vec<f64> = nm
+        .iter()
+        .map(|nm| strength * value(scene.sources[0].light.nm(), scene.sources[0].light.values(), *nm))
+        .collect();
     // The first and the last of the lamp's mean are those of half a step.
     let light = scene.sources[0].light.shares(nm);
     for k in 0..count {
         incident[k] = strength * light[k] / if k == 0 || k == count - 1 { step / 2.0 } else { step };
     }
-    let orders = match bounces { Bounces::Most(most) => most as usize + 1, Bounces::All => 2000 };
+    let orders = match bounces {
+        Bounces::Most(most) => most as usize + 1,
+        Bounces::All => 2000,
+    };
     let mut sum = vec![0.0; count];
     for _ in 0..orders {
         let mut out = vec![0.0; count];
@@ -99,9 +112,14 @@ fn two_planes_without_end_are_the_sum_of_their_series_within_the_stated_error() 
     let expected = quadrature(distance, rho);
     // Before any bounce: 1 / h^2.
     assert!((quadrature(distance, 0.0) - 1.0).abs() < 1e-6);
-    let mut scene = scene(vec![floor(0.0, 0), floor(distance, 0)], vec![grey(rho)], vec![white("lamp", Place::Point([0.0, 0.0, 1.0], 1.0))]);
+    let mut scene = scene(
+        vec![floor(0.0, 0), floor(distance, 0)],
+        vec![grey(rho)],
+        vec![white("lamp", Place::Point([0.0, 0.0, 1.0], 1.0))],
+    );
     // Straight down to the place below the lamp, from beside it.
-    scene.camera = Camera::new([1e-4, 0.0, 1.5], [0.0; 3], [0.0, 1.0, 0.0], Projection::Orthographic { width: 1e-3 }).unwrap();
+    scene.camera =
+        Camera::new([1e-4, 0.0, 1.5], [0.0; 3], [0.0, 1.0, 0.0], Projection::Orthographic { width: 1e-3 }).unwrap();
     scene.size = (10, 10);
     let mut errors = Vec::new();
     for samples in [4, 16, 64, 256, 1024] {
@@ -109,9 +127,12 @@ fn two_planes_without_end_are_the_sum_of_their_series_within_the_stated_error() 
         let picture = draw(&scene, &everything(&scene));
         let pixels = luminance(&picture);
         let mean = pixels.iter().map(|value| f64::from(*value)).sum::<f64>() / pixels.len() as f64;
-        let stated = (picture.noise.iter().map(|value| f64::from(*value).powi(2)).sum::<f64>()).sqrt() / pixels.len() as f64;
+        let stated =
+            (picture.noise.iter().map(|value| f64::from(*value).powi(2)).sum::<f64>()).sqrt() / pixels.len() as f64;
         assert!((mean - rho * expected).abs() < FAR * stated, "{samples}: {mean} +- {stated} for {}", rho * expected);
-        let rms = (pixels.iter().map(|value| (f64::from(*value) - rho * expected).powi(2)).sum::<f64>() / pixels.len() as f64).sqrt();
+        let rms = (pixels.iter().map(|value| (f64::from(*value) - rho * expected).powi(2)).sum::<f64>()
+            / pixels.len() as f64)
+            .sqrt();
         errors.push(rms);
     }
     let slope = (errors[4] / errors[0]).ln() / 256.0_f64.ln();
@@ -142,7 +163,11 @@ fn bessel(x: f64) -> f64 {
 #[test]
 fn a_glowing_wall_tints_the_white_one() {
     let blue = lamp("blue", Place::Directional([0.0, -0.6, 0.8]), [1.0, 0.2, 0.0]);
-    let mut scene = scene(vec![floor(-1.0, 0), ball([0.0; 3], 1.0, 1)], vec![grey(0.8), glowing("orange", 0.1, 600.0, 0.6)], vec![blue]);
+    let mut scene = scene(
+        vec![floor(-1.0, 0), ball([0.0; 3], 1.0, 1)],
+        vec![grey(0.8), glowing("orange", 0.1, 600.0, 0.6)],
+        vec![blue],
+    );
     scene.samples = 64;
     scene.grid = Grid::new(300.0, 780.0, 20.0).unwrap();
     let picture = spectra(&scene, &everything(&scene));
@@ -160,7 +185,9 @@ fn a_glowing_wall_tints_the_white_one() {
 fn a_body_stands_in_the_light_of_another() {
     let sun = white("sun", Place::Directional([0.0, 0.0, 1.0]));
     let mut scene = scene(vec![floor(-1.0, 0), ball([0.0; 3], 0.5, 1)], vec![grey(0.8), grey(0.0)], vec![sun]);
-    scene.camera = Camera::new([0.0, -10.0, 0.0], [0.0, 0.0, -1.0], [0.0, 0.0, 1.0], Projection::Orthographic { width: 4.0 }).unwrap();
+    scene.camera =
+        Camera::new([0.0, -10.0, 0.0], [0.0, 0.0, -1.0], [0.0, 0.0, 1.0], Projection::Orthographic { width: 4.0 })
+            .unwrap();
     scene.bounces = Bounces::Most(0);
     let picture = draw(&scene, &everything(&scene));
     let values = luminance(&picture);
@@ -172,7 +199,11 @@ fn a_body_stands_in_the_light_of_another() {
 
 #[test]
 fn the_picture_is_the_same_for_any_number_of_threads_and_another_for_another_seed() {
-    let mut scene = scene(vec![floor(-1.0, 0), ball([0.0; 3], 1.0, 1)], vec![grey(0.8), glowing("orange", 0.1, 600.0, 0.6)], vec![white("sun", Place::Directional([0.0, -0.6, 0.8]))]);
+    let mut scene = scene(
+        vec![floor(-1.0, 0), ball([0.0; 3], 1.0, 1)],
+        vec![grey(0.8), glowing("orange", 0.1, 600.0, 0.6)],
+        vec![white("sun", Place::Directional([0.0, -0.6, 0.8]))],
+    );
     let pool = |threads| rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
     let one = pool(1).install(|| draw(&scene, &everything(&scene)));
     assert_eq!(one, pool(3).install(|| draw(&scene, &everything(&scene))));

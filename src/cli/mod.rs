@@ -11,6 +11,7 @@ mod opened;
 mod output;
 mod overwrite;
 mod progress;
+mod scene_source;
 
 use std::process::ExitCode;
 
@@ -31,6 +32,7 @@ enum Command {
     Eval(command::eval::Arguments),
     Design(Box<command::design::Arguments>),
     Donaldson(Box<command::donaldson::Arguments>),
+    Render(command::render::Arguments),
     Report(command::report::Arguments),
     Info(command::info::Arguments),
     Validate(command::validate::Arguments),
@@ -63,6 +65,7 @@ pub fn run() -> ExitCode {
         Command::Eval(arguments) => command::eval::run(&arguments),
         Command::Design(arguments) => command::design::run(&arguments),
         Command::Donaldson(arguments) => command::donaldson::run(&arguments),
+        Command::Render(arguments) => command::render::run(&arguments),
         Command::Report(arguments) => command::report::run(&arguments),
         Command::Info(arguments) => command::info::run(&arguments),
         Command::Validate(arguments) => command::validate::run(&arguments),

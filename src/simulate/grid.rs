@@ -14,7 +14,9 @@ pub struct Grid {
 
 /// Numbers that make no grid.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
-#[error("wavelengths from {from} to {to} nm in steps of {step} nm; expected at least two, from 200 to 1100 nm, with steps of 0.1 to 100 nm")]
+#[error(
+    "wavelengths from {from} to {to} nm in steps of {step} nm; expected at least two, from 200 to 1100 nm, with steps of 0.1 to 100 nm"
+)]
 pub struct NoGrid {
     from: f64,
     to: f64,

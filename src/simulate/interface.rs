@@ -140,7 +140,9 @@ impl Interface {
                 for azimuth in 0..AZIMUTHS {
                     // Half a turn stands for the other: the angle from the plane of viewing, not from that of `across`.
                     let turn = (azimuth as f64 + 0.5) / (2.0 * AZIMUTHS as f64);
-                    sum += self.draw(normal, view, [(polar as f64 + 0.5) / POLARS as f64, turn]).map_or(0.0, |drawn| drawn.1);
+                    sum += self
+                        .draw(normal, view, [(polar as f64 + 0.5) / POLARS as f64, turn])
+                        .map_or(0.0, |drawn| drawn.1);
                 }
             }
             sum / (POLARS * AZIMUTHS) as f64

@@ -65,11 +65,17 @@ impl Material {
 
     pub(super) fn on(&self, grid: &Grid) -> OnGrid {
         let surface = &self.surface;
-        let known: Vec<(f64, f64)> =
-            surface.emission_nm.iter().copied().zip(surface.elastic.iter().copied()).filter(|at| at.1.is_finite()).collect();
+        let known: Vec<(f64, f64)> = surface
+            .emission_nm
+            .iter()
+            .copied()
+            .zip(surface.elastic.iter().copied())
+            .filter(|at| at.1.is_finite())
+            .collect();
         let elastic = grid.nm().iter().map(|nm| level(&known, *nm)).collect();
         let constant = self.specular.map_or(0.0, |term| term.intensity);
-        let intensity = grid.nm().iter().map(|nm| if self.intensity.is_empty() { constant } else { level(&self.intensity, *nm) });
+        let intensity =
+            grid.nm().iter().map(|nm| if self.intensity.is_empty() { constant } else { level(&self.intensity, *nm) });
         Self::luminescence(surface, grid, elastic, intensity.collect())
     }
 
@@ -80,7 +86,10 @@ impl Material {
             let (ins, outs, widths) = (place(&surface.excitation_nm), place(&surface.emission_nm), grid.widths());
             Array2::from_shape_fn((outs.len(), ins.len()), |(j, i)| {
                 let (Some((j, m)), Some((k, x))) = (outs[j], ins[i]) else { return 0.0 };
-                let at = |k: usize| (1.0 - m) * surface.density[(k, j)] + m * surface.density[(k, (j + 1).min(surface.emission_nm.len() - 1))];
+                let at = |k: usize| {
+                    (1.0 - m) * surface.density[(k, j)]
+                        + m * surface.density[(k, (j + 1).min(surface.emission_nm.len() - 1))]
+                };
                 let next = (k + 1).min(surface.excitation_nm.len() - 1);
                 widths[i] * ((1.0 - x) * at(k) + x * at(next))
             })
@@ -107,7 +116,8 @@ impl OnGrid {
         let (widths, nm) = (grid.widths(), grid.nm());
         let Some(matrix) = &self.luminescence else { return 0.0 };
         let column = |i: usize| {
-            let photons = matrix.column(i).into_iter().zip(&widths).zip(nm).map(|((value, width), out)| value * width * out);
+            let photons =
+                matrix.column(i).into_iter().zip(&widths).zip(nm).map(|((value, width), out)| value * width * out);
             photons.sum::<f64>() / (widths[i] * nm[i])
         };
         (0..nm.len()).map(column).fold(0.0, f64::max)

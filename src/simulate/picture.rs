@@ -126,7 +126,13 @@ impl Picture {
     ///
     /// # Errors
     /// [`NoPicture`].
-    pub fn draw(scene: &Scene, choice: &Choice, kept: Kept, layers: &[Layer], watch: &Watch) -> Result<Self, NoPicture> {
+    pub fn draw(
+        scene: &Scene,
+        choice: &Choice,
+        kept: Kept,
+        layers: &[Layer],
+        watch: &Watch,
+    ) -> Result<Self, NoPicture> {
         scene.check()?;
         let prepared = Prepared::new(scene, choice.step_nm)?;
         may_bounce(scene, choice, &prepared)?;
@@ -168,7 +174,9 @@ impl Picture {
         if watch.is_cancelled.load(Ordering::Relaxed) {
             return Err(NoPicture::Cancelled(watch.rows.load(Ordering::Relaxed)));
         }
-        let plane = |k: usize| rows.iter().flat_map(|row| row[k * width..(k + 1) * width].iter().copied()).collect::<Vec<f32>>();
+        let plane = |k: usize| {
+            rows.iter().flat_map(|row| row[k * width..(k + 1) * width].iter().copied()).collect::<Vec<f32>>()
+        };
         let planes = |l: usize| (0..channels).map(|c| plane(l * channels + c)).collect();
         let noise = plane(layers.len() * channels);
         Ok(Self {
@@ -208,7 +216,9 @@ pub(super) fn film_place(scene: &Scene, column: usize, row: usize) -> (f64, f64)
 /// More light than falls in may be shown, but must not go round.
 fn may_bounce(scene: &Scene, choice: &Choice, prepared: &Prepared) -> Result<(), NotDrawn> {
     let bounces = choice.has(Effect::Interreflection) && choice.bounces != super::scene::Bounces::Most(0);
-    if !bounces || matches!(scene.bodies.as_slice(), [only] if only.shape.is_convex() && !only.shape.holds(scene.camera.place)) {
+    if !bounces
+        || matches!(scene.bodies.as_slice(), [only] if only.shape.is_convex() && !only.shape.holds(scene.camera.place))
+    {
         return Ok(());
     }
     for body in &scene.bodies {

@@ -84,8 +84,10 @@ impl<'a> Tracer<'a> {
             material.specular.filter(|_| choice.has(Effect::Specular)).as_ref().map(Interface::new)
         };
         let interfaces: Vec<Option<Interface>> = scene.materials.iter().map(of_material).collect();
-        let is_surrounded = choice.has(Effect::Surround) && scene.sources.iter().any(super::source::Source::is_surround);
-        let table = |interface: &Option<Interface>| interface.as_ref().filter(|_| is_surrounded).map(Interface::surrounded);
+        let is_surrounded =
+            choice.has(Effect::Surround) && scene.sources.iter().any(super::source::Source::is_surround);
+        let table =
+            |interface: &Option<Interface>| interface.as_ref().filter(|_| is_surrounded).map(Interface::surrounded);
         Self {
             surrounded: interfaces.iter().map(table).collect(),
             albedo: spectra.materials.iter().map(|material: &OnGrid| material.albedo(grid)).collect(),
@@ -99,7 +101,15 @@ impl<'a> Tracer<'a> {
     }
 
     /// The pixel of that number, looked at from a place.
-    pub(super) fn pixel(&self, number: u64, from: Vector, towards: Vector, ways: &mut Ways<'_>, out: &mut Pixel, sample: &mut Pixel) {
+    pub(super) fn pixel(
+        &self,
+        number: u64,
+        from: Vector,
+        towards: Vector,
+        ways: &mut Ways<'_>,
+        out: &mut Pixel,
+        sample: &mut Pixel,
+    ) {
         let channels = self.spectra.channels.len();
         out.clear(channels);
         ways.tidy();
@@ -108,14 +118,19 @@ impl<'a> Tracer<'a> {
         self.direct(&spot, view, ways, out);
         // What is looked at from within is never open.
         let is_open = self.is_open && dot(spot.start.outward, towards) <= 0.0;
-        let surrounds = self.choice.has(Effect::Surround) && self.scene.sources.iter().any(super::source::Source::is_surround);
+        let surrounds =
+            self.choice.has(Effect::Surround) && self.scene.sources.iter().any(super::source::Source::is_surround);
         if surrounds && is_open {
             self.surround(&spot, view, 1.0, ways, out);
         } else if surrounds {
-            self.mean(number, Effect::Surround, ways, out, sample, |stream, ways, sample| self.glimpse(&spot, view, stream, ways, sample));
+            self.mean(number, Effect::Surround, ways, out, sample, |stream, ways, sample| {
+                self.glimpse(&spot, view, stream, ways, sample)
+            });
         }
         if self.choice.has(Effect::Interreflection) && self.choice.bounces != Bounces::Most(0) && !is_open {
-            self.mean(number, Effect::Interreflection, ways, out, sample, |stream, ways, sample| self.path(&spot, view, stream, ways, sample));
+            self.mean(number, Effect::Interreflection, ways, out, sample, |stream, ways, sample| {
+                self.path(&spot, view, stream, ways, sample)
+            });
         }
     }
 
@@ -157,7 +172,9 @@ impl<'a> Tracer<'a> {
         }
         let material = &self.spectra.materials[spot.material];
         let emitted: Vec<f64> = match material.luminescence.as_ref().filter(|_| self.choice.has(Effect::Luminescence)) {
-            Some(matrix) => matrix.outer_iter().map(|row| row.iter().zip(&incident).map(|(a, b)| a * b).sum()).collect(),
+            Some(matrix) => {
+                matrix.outer_iter().map(|row| row.iter().zip(&incident).map(|(a, b)| a * b).sum()).collect()
+            }
             None => Vec::new(),
         };
         let has_diffuse = self.choice.has(Effect::Diffuse);
@@ -180,7 +197,8 @@ impl<'a> Tracer<'a> {
         if cosine <= 0.0 || (has_shadow && self.scene.is_hidden(spot, beam.towards, beam.distance)) {
             return None;
         }
-        let shining = self.interfaces[spot.material].as_ref().map_or(0.0, |one| one.value(spot.normal, beam.towards, view));
+        let shining =
+            self.interfaces[spot.material].as_ref().map_or(0.0, |one| one.value(spot.normal, beam.towards, view));
         Some((cosine * beam.strength, shining * beam.strength))
     }
 
@@ -191,7 +209,8 @@ impl<'a> Tracer<'a> {
     /// So much of the light from all around.
     fn surround(&self, spot: &Spot, view: Vector, part: f64, ways: &mut Ways<'_>, out: &mut Pixel) {
         let [luminescent, diffuse, specular] = self.first(spot.material, ways);
-        let shining = self.surrounded[spot.material].as_ref().map_or(0.0, |table| interface::at(table, dot(spot.normal, view)));
+        let shining =
+            self.surrounded[spot.material].as_ref().map_or(0.0, |table| interface::at(table, dot(spot.normal, view)));
         for (light, _) in self.scene.sources.iter().enumerate().filter(|(_, source)| source.is_surround()) {
             self.gather(light, part, [luminescent, diffuse], ways, out);
             out.add(Act::Specular, part * shining, ways.lit(specular, light));
@@ -274,16 +293,21 @@ impl<'a> Tracer<'a> {
             Act::Diffuse => self.choice.has(Effect::Diffuse),
             Act::Body | Act::Specular => true,
         };
-        let mut next = (by_body.into_iter().filter(is_counted).collect::<Vec<_>>(), vec![Held { act: Act::Specular, way: specular }]);
+        let mut next = (
+            by_body.into_iter().filter(is_counted).collect::<Vec<_>>(),
+            vec![Held { act: Act::Specular, way: specular }],
+        );
         let (mut spot, mut view, mut weight) = (*spot, view, 1.0);
         for bounce in 1..=most.saturating_add(1) {
             let numbers = [stream.uniform(), stream.uniform(), stream.uniform()];
             let interface = self.interfaces[spot.material].as_ref();
             let drawn = match interface {
-                Some(one) if numbers[2] < BY_INTERFACE => {
-                    one.draw(spot.normal, view, [numbers[0], numbers[1]]).map(|(to, factor)| (to, factor / BY_INTERFACE, next.1))
+                Some(one) if numbers[2] < BY_INTERFACE => one
+                    .draw(spot.normal, view, [numbers[0], numbers[1]])
+                    .map(|(to, factor)| (to, factor / BY_INTERFACE, next.1)),
+                Some(_) => {
+                    Some((cosine_direction(spot.normal, [numbers[0], numbers[1]]), 1.0 / (1.0 - BY_INTERFACE), next.0))
                 }
-                Some(_) => Some((cosine_direction(spot.normal, [numbers[0], numbers[1]]), 1.0 / (1.0 - BY_INTERFACE), next.0)),
                 None => Some((cosine_direction(spot.normal, [numbers[0], numbers[1]]), 1.0, next.0)),
             };
             let Some((towards, factor, held)) = drawn else { return };
@@ -301,10 +325,14 @@ impl<'a> Tracer<'a> {
             let further = |act: Act, ways: &mut Ways<'_>| -> Vec<Held> {
                 held.iter().map(|one| Held { act: one.act, way: ways.further(one.way, act, spot.material) }).collect()
             };
-            next = (further(Act::Body, ways), if self.interfaces[spot.material].is_some() { further(Act::Specular, ways) } else { Vec::new() });
+            next = (
+                further(Act::Body, ways),
+                if self.interfaces[spot.material].is_some() { further(Act::Specular, ways) } else { Vec::new() },
+            );
             for light in 0..self.scene.sources.len() {
                 let Some((lit, shining)) = self.lit(&spot, view, light, true) else { continue };
-                for (held, factor) in next.0.iter().map(|one| (one, lit)).chain(next.1.iter().map(|one| (one, shining))) {
+                for (held, factor) in next.0.iter().map(|one| (one, lit)).chain(next.1.iter().map(|one| (one, shining)))
+                {
                     out.add(held.act, weight * factor, ways.lit(held.way, light));
                 }
             }

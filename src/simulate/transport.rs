@@ -67,7 +67,9 @@ impl Spectra<'_> {
         let mut all = vec![0.0; rows.len()];
         for (row, out) in rows.chunks_exact(count).zip(all.chunks_exact_mut(count)) {
             match act {
-                Act::Specular => out.iter_mut().zip(row).zip(&material.intensity).for_each(|((out, row), c)| *out = row * c),
+                Act::Specular => {
+                    out.iter_mut().zip(row).zip(&material.intensity).for_each(|((out, row), c)| *out = row * c)
+                }
                 Act::Diffuse | Act::Body => {
                     out.iter_mut().zip(row).zip(&material.elastic).for_each(|((out, row), rho)| *out = row * rho);
                 }

@@ -4,7 +4,8 @@
 use bbrf::donaldson::{Light, Observer, Reradiation};
 use bbrf::quantity::QuantityKind;
 use bbrf::simulate::{
-    Ball, Body, Bounces, Camera, Choice, Grid, Kept, Layer, Material, Picture, Place, Plane, Projection, Scene, Shape, Source, Watch,
+    Ball, Body, Bounces, Camera, Choice, Grid, Kept, Layer, Material, Picture, Place, Plane, Projection, Scene, Shape,
+    Source, Watch,
 };
 use bbrf::terms::{Denominator, Distribution, TorranceSparrow};
 use ndarray::Array2;
@@ -19,7 +20,8 @@ pub fn white(name: &str, place: Place) -> Source {
 
 /// A light with a spectrum that rises.
 pub fn lamp(name: &str, place: Place, values: [f64; 3]) -> Source {
-    let light = Light::new(name, QuantityKind::SpectralIrradiance, vec![300.0, 500.0, 780.0], values.to_vec(), None).unwrap();
+    let light =
+        Light::new(name, QuantityKind::SpectralIrradiance, vec![300.0, 500.0, 780.0], values.to_vec(), None).unwrap();
     Source { name: name.to_owned(), light, place }
 }
 

@@ -9,6 +9,7 @@ pub(crate) mod fit;
 pub(crate) mod import;
 pub(crate) mod info;
 pub(crate) mod migrate;
+pub(crate) mod render;
 pub(crate) mod report;
 pub(crate) mod rules;
 pub(crate) mod schema;

@@ -63,7 +63,13 @@ impl Shape {
     pub(super) fn meet(&self, ray: &Ray, own: Option<&Start>, limit: f64) -> Option<Meeting> {
         match self {
             Self::Sphere(ball) => ball.meet(ray, own, limit),
-            Self::Plane(plane) => if own.is_some() { None } else { plane.meet(ray, limit) },
+            Self::Plane(plane) => {
+                if own.is_some() {
+                    None
+                } else {
+                    plane.meet(ray, limit)
+                }
+            }
             Self::Box(cuboid) => cuboid.meet(ray, own, limit),
             Self::Mesh(mesh) => mesh.meet(ray, own, limit),
         }
