@@ -12,6 +12,7 @@ mod output;
 mod overwrite;
 mod progress;
 mod references;
+mod scene_source;
 
 use std::process::ExitCode;
 
@@ -33,6 +34,8 @@ enum Command {
     Design(Box<command::design::Arguments>),
     Donaldson(Box<command::donaldson::Arguments>),
     Cost(command::cost::Arguments),
+    Plan(command::plan::Arguments),
+    Render(command::render::Arguments),
     Report(command::report::Arguments),
     Info(command::info::Arguments),
     Validate(command::validate::Arguments),
@@ -66,6 +69,8 @@ pub fn run() -> ExitCode {
         Command::Design(arguments) => command::design::run(&arguments),
         Command::Donaldson(arguments) => command::donaldson::run(&arguments),
         Command::Cost(arguments) => command::cost::run(&arguments),
+        Command::Plan(arguments) => command::plan::run(&arguments),
+        Command::Render(arguments) => command::render::run(&arguments),
         Command::Report(arguments) => command::report::run(&arguments),
         Command::Info(arguments) => command::info::run(&arguments),
         Command::Validate(arguments) => command::validate::run(&arguments),

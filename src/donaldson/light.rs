@@ -151,6 +151,20 @@ impl Light {
         Self { line: Line::new(nm, values), ..self.clone() }
     }
 
+    /// What of the light lies in this range, nm; `None` where there is none.
+    #[must_use]
+    pub fn within(&self, from: f64, to: f64) -> Option<Self> {
+        let (low, high) = self.range_nm();
+        let (from, to) = (from.max(low), to.min(high));
+        if !(from < to) {
+            return None;
+        }
+        let inner = self.nm().iter().copied().filter(|nm| *nm > from && *nm < to);
+        let nm: Vec<f64> = std::iter::once(from).chain(inner).chain([to]).collect();
+        let values = nm.iter().map(|nm| self.line.at(*nm).unwrap_or(0.0)).collect();
+        Some(Self { line: Line::new(nm, values), ..self.clone() })
+    }
+
     /// What of it each of these wavelengths (nm, ascending) takes part in: shared out between neighbours by their distance, nothing
     /// lost and nothing twice; what lies outside them is left out.
     #[must_use]

@@ -10,12 +10,15 @@
 
 mod camera;
 mod choice;
+mod colours;
 pub mod convex;
+pub mod document;
 mod effect;
 mod film;
 mod grid;
 pub mod image;
 mod interface;
+mod losses;
 mod material;
 mod picture;
 mod plan;
@@ -31,6 +34,7 @@ mod vector;
 
 pub use camera::{Camera, NoCamera, Projection};
 pub use choice::Choice;
+pub use colours::NoLayer;
 pub use effect::Effect;
 pub use film::{Film, LONGEST_SIDE, NoFilm};
 pub use grid::{Grid, NoGrid};

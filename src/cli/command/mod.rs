@@ -10,6 +10,8 @@ pub(crate) mod fit;
 pub(crate) mod import;
 pub(crate) mod info;
 pub(crate) mod migrate;
+pub(crate) mod plan;
+pub(crate) mod render;
 pub(crate) mod report;
 pub(crate) mod rules;
 pub(crate) mod schema;

@@ -7,6 +7,7 @@ use super::{info, rules};
 use crate::cli::exit::{CommandResult, Outcome};
 use crate::cli::output::print_text;
 use crate::dataset::Document;
+use crate::simulate::document::SceneDocument;
 use crate::validate::form::ValidateResult;
 
 /// Print a JSON Schema, or the names of all.
@@ -37,8 +38,11 @@ pub(crate) fn all() -> Vec<(&'static str, Schema)> {
         ("import", schema_for!(super::import::ImportResult<'static>)),
         ("info", schema_for!(info::InfoResult)),
         ("migrate", schema_for!(super::migrate::MigrateResult)),
+        ("plan", schema_for!(crate::simulate::Plan)),
+        ("render", schema_for!(super::render::RenderResult)),
         ("report", schema_for!(super::report::ReportResult)),
         ("rules", schema_for!(rules::RulesResult)),
+        ("scene", schema_for!(SceneDocument)),
         ("validate", schema_for!(ValidateResult<'static>)),
     ];
     for (name, schema) in &mut schemas {

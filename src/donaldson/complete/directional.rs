@@ -3,7 +3,7 @@
 use super::super::piecewise::place;
 use crate::dataset::{Look, Model, ParameterCovariance, ReflectanceSource, TermsError, predict};
 use crate::quantity::{Geometry, Reference};
-use crate::terms::{Term, TermKind, Undefined};
+use crate::terms::{Term, TermKind, TorranceSparrow, Undefined};
 
 /// The elastic terms of a fit.
 #[derive(Debug, Clone, PartialEq)]
@@ -95,6 +95,27 @@ impl Directional {
     /// True where a specular term is among them.
     pub(super) fn has_specular(&self) -> bool {
         self.has_specular
+    }
+
+    /// What its Lambertian terms reflect at a wavelength, nm, of light along the normal.
+    pub(super) fn albedo(&self, nm: f64) -> f64 {
+        let diffuse = |(terms, _): &(Vec<Term>, ParameterCovariance)| {
+            let albedo = |term: &Term| if let Term::Lambertian { albedo } = term { *albedo } else { 0.0 };
+            Part { diffuse: terms.iter().map(albedo).sum(), ..Part::default() }
+        };
+        Angular { nm: &self.nm, parts: self.bands.iter().map(diffuse).collect() }.at(nm).diffuse
+    }
+
+    /// The specular terms of each wavelength, nm; those without intensity are left out.
+    pub(super) fn interface(&self) -> Vec<(Option<f64>, Vec<TorranceSparrow>)> {
+        let lit = |term: &Term| match term {
+            Term::TorranceSparrow(specular) if specular.intensity != 0.0 => Some(*specular),
+            _ => None,
+        };
+        let of = |(k, (terms, _)): (usize, &(Vec<Term>, ParameterCovariance))| {
+            (self.nm.get(k).copied(), terms.iter().filter_map(lit).collect())
+        };
+        self.bands.iter().enumerate().map(of).collect()
     }
 
     /// Parameters without a covariance that the uncertainty of the specular terms needs.

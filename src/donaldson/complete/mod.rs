@@ -18,6 +18,7 @@ use super::light::{Extend, Light};
 use super::{NoMatrix, Reradiation};
 use crate::dataset::{Attached, Document, Measurement, Model, NotComplete, ReflectanceSource, TermsError};
 use crate::quantity::{Basis, ConversionRefused, CorrelatedOver, Geometry, Part, Reference};
+use crate::terms::TorranceSparrow;
 
 /// A model that says what a surface radiates in any direction under any light from any direction.
 #[derive(Debug, Clone, PartialEq)]
@@ -134,6 +135,25 @@ impl Complete {
     #[must_use]
     pub fn findings(&self) -> &[String] {
         &self.findings
+    }
+
+    /// The same with the diffuse reflectance that counts: that of the terms, or that of the matrix less what the interface sends into
+    /// its geometry. Uncertainties stay those of [`Complete::surface`].
+    #[must_use]
+    pub fn lambertian(&self) -> Reradiation {
+        let mut surface = self.surface.clone();
+        let elastic = (0..surface.elastic.len()).map(|emission| match self.reflectance {
+            ReflectanceSource::Matrix => self.matrix_reflectance(emission).0,
+            ReflectanceSource::Terms => self.directional.albedo(self.surface.emission_nm[emission]),
+        });
+        surface.elastic = elastic.collect();
+        surface
+    }
+
+    /// The terms of the interface at each wavelength of the fit, nm; without a wavelength where it was fitted to one number.
+    #[must_use]
+    pub fn interface(&self) -> Vec<(Option<f64>, Vec<TorranceSparrow>)> {
+        self.directional.interface()
     }
 
     /// The diffuse reflectance by the matrix at an emission, with its standard uncertainty: its elastic part, less what the interface

@@ -20,10 +20,13 @@ const MOST_SHADES: usize = 6;
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, schemars::JsonSchema)]
 pub struct Bound {
     /// Radiance at any wavelength over the largest that a perfect diffuser facing all lights has.
+    #[schemars(with = "Option<f64>")]
     pub radiance: f64,
     /// Luminance over that of white.
+    #[schemars(with = "Option<f64>")]
     pub luminance: f64,
     /// CIELAB distance of 1976.
+    #[schemars(with = "Option<f64>")]
     pub delta_e: f64,
     /// CIEDE2000 where the largest distance occurs that was met in the proof: reported, and no bound, for its formula has jumps.
     pub ciede2000_there: Option<f64>,

@@ -46,13 +46,13 @@ impl Lights {
 }
 
 /// A light, with remarks on how it was read.
-pub(in crate::cli::command) struct Loaded {
-    pub(in crate::cli::command) light: Light,
-    pub(in crate::cli::command) remarks: Vec<String>,
+pub(in crate::cli) struct Loaded {
+    pub(in crate::cli) light: Light,
+    pub(in crate::cli) remarks: Vec<String>,
 }
 
 /// Reads a light.
-pub(in crate::cli::command) fn load(name: &str) -> Result<Loaded, miette::Report> {
+pub(in crate::cli) fn load(name: &str) -> Result<Loaded, miette::Report> {
     if let Some(light) = Light::named(name) {
         return Ok(Loaded { light, remarks: Vec::new() });
     }
@@ -63,7 +63,7 @@ pub(in crate::cli::command) fn load(name: &str) -> Result<Loaded, miette::Report
     if !Path::new(name).is_file() {
         return Err(miette!(
             help = "name a light of the CIE, or a file: two columns (nm, value), a spectrum that `bbrf import` reads, FILE.bbrf#ID",
-            "--light {name}: found neither a file nor a light of the CIE; expected one of {}, or another daylight as D60",
+            "light {name}: found neither a file nor a light of the CIE; expected one of {}, or another daylight as D60",
             Light::names().join(", ")
         ));
     }
@@ -73,7 +73,7 @@ pub(in crate::cli::command) fn load(name: &str) -> Result<Loaded, miette::Report
     if records > 1 {
         return Err(miette!(
             help = "keep the column or the record that is the light",
-            "--light {name}: found {records} spectra; expected one: two columns (nm, value), or one record"
+            "light {name}: found {records} spectra; expected one: two columns (nm, value), or one record"
         ));
     }
     of_document(name, name, None, &document)
@@ -103,14 +103,12 @@ fn of_document(name: &str, path: &str, id: Option<&str>, document: &Document) ->
         (Some(id), all) => all
             .iter()
             .find(|offer| offer.id() == id)
-            .ok_or_else(|| miette!("--light {name}: no light or measurement `{id}`; the file has: {}", names()))?,
+            .ok_or_else(|| miette!("light {name}: no light or measurement `{id}`; the file has: {}", names()))?,
         (None, [one]) => one,
         (None, []) => {
-            return Err(miette!(
-                "--light {name}: found no light with a spectrum and no lamp measurement; expected one"
-            ));
+            return Err(miette!("light {name}: found no light with a spectrum and no lamp measurement; expected one"));
         }
-        (None, _) => return Err(miette!("--light {name}: holds several lights ({}); name one as {path}#ID", names())),
+        (None, _) => return Err(miette!("light {name}: holds several lights ({}); name one as {path}#ID", names())),
     };
     match offer {
         Offer::Light(_, spectrum) => {
@@ -125,10 +123,7 @@ fn of_document(name: &str, path: &str, id: Option<&str>, document: &Document) ->
 /// The mean of its rows.
 fn of_measurement(name: &str, measurement: &Measurement) -> Result<Loaded, miette::Report> {
     let EmissionAxis::Wavelengths(axis) = &measurement.emission else {
-        return Err(miette!(
-            "--light {name}: measurement `{}` has no wavelengths; expected a spectrum",
-            measurement.id
-        ));
+        return Err(miette!("light {name}: measurement `{}` has no wavelengths; expected a spectrum", measurement.id));
     };
     let rows = measurement.values.nrows();
     let mean = |column: usize| {
@@ -152,8 +147,7 @@ fn finish(
     values: Vec<(f64, u16)>,
     mut remarks: Vec<String>,
 ) -> Result<Loaded, miette::Report> {
-    let (light, more) =
-        Light::of_values(name, kind, axis, &values).map_err(|error| miette!("--light {name}: {error}"))?;
+    let (light, more) = Light::of_values(name, kind, axis, &values).map_err(|error| miette!("{name}: {error}"))?;
     remarks.extend(more);
     Ok(Loaded { light, remarks })
 }

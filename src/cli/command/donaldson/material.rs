@@ -9,25 +9,25 @@ use crate::donaldson::{Matrix, Separate, Separated, restored, separate};
 use crate::quantity::{Part, QuantityKind};
 
 /// A matrix that is ready for lights.
-pub(in crate::cli::command) struct Material {
-    pub(in crate::cli::command) name: String,
-    pub(in crate::cli::command) measurement: Measurement,
-    pub(in crate::cli::command) matrix: Matrix,
-    pub(in crate::cli::command) separated: Separated,
-    pub(in crate::cli::command) separation: Separation,
+pub(in crate::cli) struct Material {
+    pub(in crate::cli) name: String,
+    pub(in crate::cli) measurement: Measurement,
+    pub(in crate::cli) matrix: Matrix,
+    pub(in crate::cli) separated: Separated,
+    pub(in crate::cli) separation: Separation,
 }
 
 /// Where a separation comes from.
 #[derive(Default)]
-pub(in crate::cli::command) struct Separation {
+pub(in crate::cli) struct Separation {
     /// The factorisation that is used; none where it was made anew.
-    pub(in crate::cli::command) stored: Option<String>,
+    pub(in crate::cli) stored: Option<String>,
     /// What the user should know: why a stored one is not used.
-    pub(in crate::cli::command) remark: Option<String>,
+    pub(in crate::cli) remark: Option<String>,
 }
 
 /// The file and the id of `FILE#ID`.
-pub(in crate::cli::command) fn split(name: &str) -> (&str, Option<&str>) {
+pub(in crate::cli) fn split(name: &str) -> (&str, Option<&str>) {
     match name.rsplit_once('#') {
         Some((path, id)) => (path, Some(id)),
         None => (name, None),
@@ -35,7 +35,7 @@ pub(in crate::cli::command) fn split(name: &str) -> (&str, Option<&str>) {
 }
 
 /// The matrix with its separation: the stored one, unless another number of factors is asked for or the matrix has changed since.
-pub(in crate::cli::command) fn load(name: &str, rank: Option<usize>) -> Result<Material, miette::Report> {
+pub(in crate::cli) fn load(name: &str, rank: Option<usize>) -> Result<Material, miette::Report> {
     let (path, id) = split(name);
     let document = open(path.as_ref())?.document;
     let measurement = pick(&document, path, id)?.clone();
@@ -84,7 +84,7 @@ fn stored(
 }
 
 /// The matrix of that id in a document, or its only one.
-pub(in crate::cli::command) fn pick<'a>(
+pub(in crate::cli) fn pick<'a>(
     document: &'a Document,
     path: &str,
     id: Option<&str>,
@@ -110,6 +110,6 @@ pub(in crate::cli::command) fn pick<'a>(
 }
 
 /// A list that may be empty, for a message.
-pub(super) fn or_none(names: String) -> String {
+pub(in crate::cli) fn or_none(names: String) -> String {
     if names.is_empty() { "none".to_owned() } else { names }
 }

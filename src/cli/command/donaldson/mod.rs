@@ -1,11 +1,11 @@
 //! `bbrf donaldson`: bispectral matrices, one file per step.
 
 pub(crate) mod estimate;
-pub(super) mod light_source;
-pub(super) mod material;
+pub(in crate::cli) mod light_source;
+pub(in crate::cli) mod material;
 pub(crate) mod predict;
 pub(crate) mod separate;
-mod spectrum_source;
+pub(in crate::cli) mod spectrum_source;
 
 use clap::Subcommand;
 

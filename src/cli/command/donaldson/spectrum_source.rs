@@ -14,7 +14,7 @@ use crate::quantity::{EmissionAxis, Flag, QuantityKind};
 
 /// Reads a spectrum; `kind` is what its numbers are where it does not say, `noise` their relative standard uncertainty where it
 /// has none. Remarks say how it was read.
-pub(super) fn load(
+pub(in crate::cli) fn load(
     name: &str,
     kind: Option<QuantityKind>,
     noise: Option<f64>,

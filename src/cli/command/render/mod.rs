@@ -1,0 +1,138 @@
+//! `bbrf render`: draws a scene.
+
+mod draw;
+mod images;
+mod result;
+
+use std::path::{Path, PathBuf};
+
+use miette::miette;
+
+use crate::cli::command::plan::Tolerance;
+use crate::cli::exit::{CommandResult, Outcome};
+use crate::cli::output::{print_json, print_message, print_text, write_output};
+use crate::cli::overwrite::refuse_overwriting;
+use crate::cli::scene_source;
+use crate::simulate::image::Gamut;
+use crate::simulate::{Choice, Kept, Layer};
+pub(crate) use result::RenderResult;
+
+const EXAMPLES: &str = "\
+Examples:
+  bbrf render sphere.toml -o sphere
+  bbrf render room.toml -o room --samples 256 --seed 7 --threads 8
+  bbrf render room.toml -o room --spectra --layers total,luminescent --json";
+
+/// What describes the images.
+const RECORD: &str = "render.json";
+/// All layers in single precision.
+const LAYERS: &str = "layers.exr";
+
+/// Draw a scene: the total and its parts, as PNG and EXR
+///
+/// SCENE is a description in TOML (`bbrf schema scene`): film, camera, wavelengths, materials from .bbrf files or made up, lights,
+/// objects. Written are a PNG in sRGB for each layer, one EXR with all layers in single precision, and `render.json`, which says what
+/// was drawn and with which error. The same scene, seed and samples give the same bytes, whatever the number of threads. Ctrl-C
+/// ends the work, and nothing is written.
+#[derive(Debug, clap::Args)]
+#[command(after_help = EXAMPLES)]
+pub(crate) struct Arguments {
+    /// The scene, TOML
+    scene: PathBuf,
+    /// Write the images into this folder
+    #[arg(short, long, value_name = "DIR")]
+    output: PathBuf,
+    /// Layers: total, luminescent, diffuse, specular, interreflection [default: all; those that are black throughout leave out
+    /// interreflection]
+    #[arg(long, value_delimiter = ',', value_name = "LAYERS")]
+    layers: Vec<Layer>,
+    /// Keep spectra in the EXR, one channel per wavelength, whatever the scene says
+    #[arg(long)]
+    spectra: bool,
+    /// Samples of each pixel for what has no closed form [default: the scene's]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_048_576))]
+    samples: Option<u32>,
+    /// Where random numbers begin [default: the scene's]
+    #[arg(long, value_name = "N")]
+    seed: Option<u64>,
+    /// How many threads [default: one per core]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    threads: Option<u16>,
+    /// What the PNG does with colours that a display has not: desaturate or clip
+    #[arg(long, default_value = "desaturate")]
+    gamut: Gamut,
+    #[command(flatten)]
+    tolerance: Tolerance,
+    /// Simulate everything in full, with the whole product at every pixel: what plans are held against
+    #[arg(long, conflicts_with = "max_delta_e")]
+    everything: bool,
+    /// Print what `render.json` holds
+    #[arg(long)]
+    json: bool,
+}
+
+pub(crate) fn run(arguments: &Arguments) -> CommandResult {
+    let mut loaded = scene_source::load(&arguments.scene)?;
+    let resolved = &mut loaded.resolved;
+    resolved.scene.samples = arguments.samples.unwrap_or(resolved.scene.samples);
+    resolved.scene.seed = arguments.seed.unwrap_or(resolved.scene.seed);
+    if arguments.spectra {
+        resolved.kept = Kept::Spectra;
+    }
+    let layers = if arguments.layers.is_empty() { Layer::ALL.to_vec() } else { each_once(&arguments.layers) };
+    let names = layers.iter().map(|layer| format!("{layer}.png")).chain([LAYERS.to_owned(), RECORD.to_owned()]);
+    for name in names {
+        refuse_overwriting(&arguments.output.join(name), loaded.read.clone())?;
+    }
+    let resolved = &loaded.resolved;
+    let plan = match arguments.everything {
+        true => None,
+        false => Some(arguments.tolerance.plan(&resolved.scene)?),
+    };
+    let choice = match &plan {
+        Some(plan) => plan.choice,
+        None => Choice::everything(resolved.scene.bounces, resolved.scene.grid.step()),
+    };
+    let place = arguments.scene.display().to_string();
+    let mut picture = draw::draw(&place, resolved, &choice, &layers, arguments.threads)?;
+    if arguments.layers.is_empty() {
+        // Nothing to see, and nothing that was asked for.
+        picture.layers.retain(|(layer, planes)| {
+            *layer != Layer::Interreflection || planes.iter().flatten().any(|value| *value != 0.0)
+        });
+    }
+    let (files, drawn) = images::encode(&picture, resolved, arguments.gamut)?;
+    let result = RenderResult::new(&place, resolved, plan, &picture, drawn);
+    write(&arguments.output, &files, &result)?;
+    if arguments.json {
+        print_json("bbrf:render:1", &result)?;
+    } else {
+        print_text(&result.text(&arguments.output))?;
+    }
+    Ok(Outcome::Done)
+}
+
+fn each_once(layers: &[Layer]) -> Vec<Layer> {
+    Layer::ALL.iter().copied().filter(|layer| layers.contains(layer)).collect()
+}
+
+/// The record goes first and comes last: where it is, it is of the images beside it.
+fn write(folder: &Path, files: &[(String, Vec<u8>)], result: &RenderResult) -> Result<(), miette::Report> {
+    let refused = |path: &Path, error: &std::io::Error| miette!("{}: cannot be written: {error}", path.display());
+    std::fs::create_dir_all(folder).map_err(|error| refused(folder, &error))?;
+    let record = folder.join(RECORD);
+    // Of an earlier image with other layers none may be taken for one of this.
+    let stale =
+        Layer::ALL.iter().map(|layer| format!("{layer}.png")).filter(|name| files.iter().all(|(one, _)| one != name));
+    let stale = stale.map(|name| folder.join(name)).filter(|_| record.is_file());
+    for path in stale.chain([record.clone()]).filter(|path| path.is_file()).collect::<Vec<_>>() {
+        std::fs::remove_file(&path).map_err(|error| refused(&path, &error))?;
+    }
+    for (name, bytes) in files {
+        write_output(&folder.join(name), bytes)?;
+    }
+    let text = result.json().map_err(|error| miette!("{error}"))?;
+    write_output(&record, text.as_bytes())?;
+    print_message(&format!("bbrf: wrote {} images to {}", files.len(), folder.display()));
+    Ok(())
+}

@@ -1,0 +1,207 @@
+//! What was drawn, beside the images and for `--json`.
+
+use std::fmt::Write;
+use std::path::Path;
+
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::LAYERS;
+use crate::simulate::document::Resolved;
+use crate::simulate::image::{Gamut, OutOfGamut};
+use crate::simulate::{Bounces, Kept, Layer, Picture, Plan};
+
+/// What `render.json` and `--json` hold: the same for the same scene, seed and samples.
+#[derive(Debug, Serialize, JsonSchema)]
+pub(crate) struct RenderResult {
+    /// The program's version.
+    program_version: &'static str,
+    /// The scene as it was named.
+    scene: String,
+    /// Pixels in a row.
+    width: usize,
+    /// Rows.
+    height: usize,
+    /// Wavelengths, nm: first, last and step.
+    wavelengths_nm: [f64; 3],
+    /// Degrees of the CIE observer.
+    observer: String,
+    /// What the EXR holds of each pixel.
+    kept: Kept,
+    /// Samples of each pixel for what has no closed form.
+    samples: u32,
+    /// Where random numbers began.
+    seed: u64,
+    /// Bounces.
+    bounces: Bounces,
+    /// What of the scene was simulated, why the rest need not be, and what that changes at most; `null` where everything was simulated
+    /// in full.
+    plan: Option<Plan>,
+    /// What the PNGs multiply the light with.
+    exposure: f64,
+    /// X, Y and Z of a perfect diffuser that faces all lights: what all colours here are in, Y being 1.
+    white: [f64; 3],
+    /// The layers.
+    layers: Vec<Drawn>,
+    /// The file with all layers in single precision: linear light in the primaries of sRGB, white being 1, without the exposure; the
+    /// spectral radiance in the unit of the lights per sr where spectra are kept.
+    exr: &'static str,
+    /// Standard error of what was drawn at random; `null` where nothing was.
+    noise: Option<Noise>,
+    /// What is missing, one sentence each.
+    warnings: Vec<String>,
+    /// How things were read, one sentence each.
+    remarks: Vec<String>,
+}
+
+/// A layer.
+#[derive(Debug, Serialize, JsonSchema)]
+pub(crate) struct Drawn {
+    /// Which.
+    layer: Layer,
+    /// Its PNG.
+    file: String,
+    /// Mean X, Y and Z of all pixels.
+    mean: [f64; 3],
+    /// The pixel with the greatest Y.
+    brightest: Brightest,
+    /// What of it a display of sRGB cannot show.
+    out_of_gamut: Outside,
+}
+
+/// A pixel.
+#[derive(Debug, Serialize, JsonSchema)]
+pub(crate) struct Brightest {
+    /// From the left, from 0.
+    pub(crate) column: usize,
+    /// From the top, from 0.
+    pub(crate) row: usize,
+    /// Its colour.
+    pub(crate) xyz: [f32; 3],
+}
+
+/// Colours outside sRGB.
+#[derive(Debug, Serialize, JsonSchema)]
+struct Outside {
+    /// What the PNG does with them.
+    gamut: Gamut,
+    /// How many pixels.
+    pixels: usize,
+    /// Most by which a linear channel lies below 0; white is 1.
+    below: f64,
+    /// Most by which a linear channel lies above 1.
+    above: f64,
+    /// Pixels without a colour, which are black.
+    undefined: usize,
+}
+
+/// Standard error (k = 1) of the Y of the pixels, from the scatter of their samples; white has a Y of 1.
+#[derive(Debug, Serialize, JsonSchema)]
+struct Noise {
+    /// Half of all pixels have less.
+    median: f32,
+    /// None has more.
+    largest: f32,
+}
+
+impl Noise {
+    fn of(picture: &Picture) -> Option<Self> {
+        let mut sorted = picture.noise.clone();
+        sorted.sort_by(f32::total_cmp);
+        Some(Self { median: *sorted.get(sorted.len() / 2)?, largest: *sorted.last()? })
+    }
+}
+
+impl Drawn {
+    pub(super) fn new(layer: Layer, file: String, outside: &OutOfGamut, mean: [f64; 3], brightest: Brightest) -> Self {
+        let OutOfGamut { gamut, pixels, below, above, undefined, .. } = *outside;
+        Self { layer, file, mean, brightest, out_of_gamut: Outside { gamut, pixels, below, above, undefined } }
+    }
+}
+
+impl RenderResult {
+    pub(super) fn new(
+        place: &str,
+        resolved: &Resolved,
+        plan: Option<Plan>,
+        picture: &Picture,
+        layers: Vec<Drawn>,
+    ) -> Self {
+        let scene = &resolved.scene;
+        let nm = &picture.nm;
+        let (first, last) = (nm.first().copied().unwrap_or_default(), nm.last().copied().unwrap_or_default());
+        Self {
+            program_version: env!("CARGO_PKG_VERSION"),
+            scene: place.to_owned(),
+            width: picture.width,
+            height: picture.height,
+            wavelengths_nm: [first, last, nm.get(1).map_or(0.0, |second| second - first)],
+            observer: scene.observer.to_string(),
+            kept: picture.kept,
+            samples: scene.samples,
+            seed: scene.seed,
+            bounces: scene.bounces,
+            plan,
+            exposure: resolved.exposure,
+            white: picture.white,
+            layers,
+            exr: LAYERS,
+            noise: Noise::of(picture),
+            warnings: resolved.warnings.clone(),
+            remarks: resolved.remarks.clone(),
+        }
+    }
+
+    /// The file, with the name of its schema.
+    pub(super) fn json(&self) -> serde_json::Result<String> {
+        let mut value = serde_json::to_value(self)?;
+        if let Some(object) = value.as_object_mut() {
+            object.insert("schema".to_owned(), "bbrf:render:1".into());
+        }
+        Ok(serde_json::to_string_pretty(&value)? + "\n")
+    }
+
+    pub(super) fn text(&self, folder: &Path) -> String {
+        let mut text = String::new();
+        for one in &self.layers {
+            let path = folder.join(&one.file);
+            let outside = &one.out_of_gamut;
+            // Writing into a text cannot fail.
+            let _ = write!(
+                text,
+                "{}: mean Y {:.6}, brightest {:.4} at column {}, row {}",
+                path.display(),
+                one.mean[1],
+                one.brightest.xyz[1],
+                one.brightest.column,
+                one.brightest.row
+            );
+            let done = if outside.gamut == Gamut::Clip { "clipped" } else { "paler than they are" };
+            let _ = match outside.pixels {
+                0 => writeln!(text),
+                pixels => writeln!(
+                    text,
+                    "; {pixels} of {} pixels are no colours of sRGB and {done}",
+                    self.width * self.height
+                ),
+            };
+        }
+        let _ = write!(text, "{}", folder.join(self.exr).display());
+        if let Some(plan) = &self.plan {
+            let skipped = plan.effects.iter().filter(|one| !one.simulate).map(|one| one.effect.name());
+            let skipped = skipped.collect::<Vec<_>>().join(", ");
+            let _ = match skipped.as_str() {
+                "" => write!(text, "\nnothing was left out"),
+                _ => write!(text, "\nleft out: {skipped}; a pixel changes by at most {:.3} CIELAB", plan.bound.delta_e),
+            };
+        }
+        if let Some(noise) = &self.noise {
+            let _ = write!(
+                text,
+                "\nstandard error of Y: {:.2e} in the median, {:.2e} at most (white is 1)",
+                noise.median, noise.largest
+            );
+        }
+        text
+    }
+}
