@@ -48,6 +48,15 @@ impl Interface {
         }
     }
 
+    /// About the angle at which D has fallen to a half, rad.
+    pub(super) fn half_width(&self) -> f64 {
+        match self.spread {
+            Spread::Gaussian { rate } => (std::f64::consts::LN_2 / rate).sqrt(),
+            Spread::Beckmann { width } => std::f64::consts::LN_2.sqrt() * width,
+            Spread::TrowbridgeReitz { width } => 0.64 * width,
+        }
+    }
+
     /// D F G / den; 0 where light or view is below the horizon.
     #[inline]
     pub(super) fn value(&self, normal: Vector, light: Vector, view: Vector) -> f64 {
@@ -89,26 +98,33 @@ impl Interface {
         }
     }
 
-    /// The most that D F G / den can be where the half vector stands at least so far from the normal (rad) and light and view are
-    /// not both further than so from it (cosine): F and G/den at their largest. Infinite where nothing bounds it.
-    pub(super) fn most(&self, phi: f64, least_cos_q: f64) -> f64 {
-        let (sin_phi, cos_phi) = phi.sin_cos();
-        let half = HalfAngles { phi, sin_phi, cos_phi, cos_q: 1.0, sin2_q: 0.0 };
-        let d = self.lobe.evaluate(&half).value;
+    /// The most that D F G / den can be where the half vector stands between so far and so far from the normal (rad) and light and
+    /// view at most so far from it (`least_cos_q`, a cosine). Infinite where nothing bounds it.
+    pub(super) fn most(&self, from: f64, to: f64, least_cos_q: f64) -> f64 {
+        let half = |phi: f64, cos_q: f64| {
+            let (sin_phi, cos_phi) = phi.sin_cos();
+            HalfAngles { phi, sin_phi, cos_phi, cos_q, sin2_q: 1.0 - cos_q * cos_q }
+        };
+        // D falls or grows all along a ring, but for Beckmann's, which is largest where tan^2(phi) = 2 m^2 - 1.
+        let d = |phi: f64| self.lobe.evaluate(&half(phi, 1.0)).value;
+        let turn = match self.spread {
+            Spread::Beckmann { width } => (2.0 * width * width - 1.0).max(0.0).sqrt().atan(),
+            Spread::Gaussian { .. } | Spread::TrowbridgeReitz { .. } => from,
+        };
+        let d = d(from).max(d(to)).max(d(turn.clamp(from, to)));
         if d == 0.0 {
             return 0.0;
         }
-        if self.denominator == Denominator::CosICosV || least_cos_q <= 0.0 {
-            return f64::INFINITY;
-        }
-        let least = HalfAngles { cos_q: least_cos_q, sin2_q: 1.0 - least_cos_q * least_cos_q, ..half };
-        // F grows with theta_Q; G over one cosine is at most 2 cos(phi) / cos(theta_Q). D may grow again next to 90 degrees
-        // (Beckmann, Trowbridge-Reitz with a roughness above 1): the largest of a fine grid covers that.
-        let d = (0..=64).map(|k| phi + (FRAC_PI_2 - phi) * f64::from(k) / 64.0).fold(d, |most, phi| {
-            let (sin_phi, cos_phi) = phi.sin_cos();
-            most.max(self.lobe.evaluate(&HalfAngles { phi, sin_phi, cos_phi, ..half }).value)
-        });
-        d * fresnel(&least, self.index_minus_one).value * 2.0 * cos_phi / least_cos_q
+        // Neither cosine is below that of both angles together; G over one cosine is at most 2 cos(phi) / cos(theta_Q), too.
+        let least = (least_cos_q.clamp(-1.0, 1.0).acos() + to).min(FRAC_PI_2).cos().max(0.0);
+        let over_one = if least > 1e-12 { 1.0 / least } else { f64::INFINITY };
+        let by_half = if least_cos_q > 0.0 { 2.0 * from.cos() / least_cos_q } else { f64::INFINITY };
+        let angular = match self.denominator {
+            Denominator::CosThetaI | Denominator::CosThetaV => over_one.min(by_half),
+            Denominator::CosICosV => over_one * over_one.min(by_half),
+        };
+        // F grows with theta_Q.
+        d * fresnel(&half(from, least_cos_q.max(0.0)), self.index_minus_one).value * angular
     }
 
     /// A direction of light for a view, drawn by the lobe, with D F G / den over pi times its density; `None` where it falls below

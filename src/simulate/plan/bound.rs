@@ -9,7 +9,7 @@ use super::super::scene::{Bounces, Scene};
 use super::super::transport::{Act, Spectra};
 use super::indirect::{Between, of};
 use super::lab::{Factor, Largest, largest};
-use super::reach::{may_shade, most_lit, most_seen, most_shining};
+use super::reach::{Ring, may_shade, most_lit, most_seen, rings};
 
 /// The light from all around at an interface is tabulated; its largest value may lie between two of the table, and beside its sum.
 const TABLE: f64 = 1.05;
@@ -59,6 +59,8 @@ pub(super) struct Reach {
     pub(super) lit: Vec<Vec<f64>>,
     /// \[body\]\[light\]: largest D F G / den times the strength.
     pub(super) shining: Vec<Vec<f64>>,
+    /// \[body\]\[light\]: the same in rings about the brightest place.
+    rings: Vec<Vec<Vec<Ring>>>,
     /// \[body\]\[light\]: whether a body may stand in between.
     pub(super) shaded: Vec<Vec<bool>>,
     /// \[body\]\[other\]: share of the hemisphere.
@@ -92,14 +94,17 @@ impl Reach {
                     .map_or(0.0, |one| TABLE * one.surrounded().into_iter().fold(0.0, f64::max))
             })
             .collect();
+        let rings_of = |body: usize, source: &super::super::source::Source| match interface(body) {
+            Some(one) if !source.is_surround() => rings(scene, &scene.bodies[body], source, one),
+            _ => Vec::new(),
+        };
         let lights = |body: usize, of: &dyn Fn(usize, &super::super::source::Source) -> f64| {
             scene.sources.iter().map(|source| of(body, source)).collect::<Vec<f64>>()
         };
         let lit = |body: usize, source: &super::super::source::Source| most_lit(&scene.bodies[body].shape, source);
         let shining = |body: usize, source: &super::super::source::Source| match interface(body) {
             Some(_) if source.is_surround() => tables[scene.bodies[body].material],
-            Some(one) => most_shining(scene, &scene.bodies[body], source, one),
-            None => 0.0,
+            _ => rings_of(body, source).iter().map(|ring| ring.shining).fold(0.0, f64::max),
         };
         let shades = |body: usize| {
             scene
@@ -113,6 +118,10 @@ impl Reach {
         Self {
             lit: bodies.clone().map(|body| lights(body, &lit)).collect(),
             shining: bodies.clone().map(|body| lights(body, &shining)).collect(),
+            rings: bodies
+                .clone()
+                .map(|body| scene.sources.iter().map(|source| rings_of(body, source)).collect())
+                .collect(),
             shaded: bodies.clone().map(shades).collect(),
             mirrored: bodies.clone().map(|body| tables[scene.bodies[body].material]).collect(),
             has_interface: bodies.clone().map(|body| interface(body).is_some()).collect(),
@@ -322,7 +331,10 @@ impl<'a> Full<'a> {
         };
         let mut parts: Vec<Part> = Vec::new();
         let mut shades: Vec<(usize, Factor, Vec<f64>)> = Vec::new();
+        // Where the factors of a light stand: cos(theta_i), and the lobe.
+        let mut pairs: Vec<(usize, [Option<usize>; 2])> = Vec::new();
         for (light, source) in self.scene.sources.iter().enumerate() {
+            pairs.push((light, [None; 2]));
             for acts in [vec![0, 1], vec![2]] {
                 let most = if acts[0] == 2 { self.reach.shining[body][light] } else { self.reach.lit[body][light] };
                 let sum = |from: &[Acts; 3], counts: &dyn Fn(usize) -> bool| {
@@ -354,9 +366,16 @@ impl<'a> Full<'a> {
                     let shadow: Vec<f64> = (0..lost.len())
                         .map(|j| acts.iter().map(|act| full[*act].spectra[light][j].abs()).sum())
                         .collect();
-                    shades.push((parts.len(), Factor { most, kept, left_out: kept.map(|value| -value) }, shadow));
+                    shades.push((
+                        parts.len(),
+                        Factor { least: 0.0, most, kept, left_out: kept.map(|value| -value) },
+                        shadow,
+                    ));
                 }
-                parts.push(Part { factor: Factor { most, kept, left_out }, peak: lost });
+                if let Some((_, at)) = pairs.last_mut() {
+                    at[usize::from(acts[0] == 2)] = Some(parts.len());
+                }
+                parts.push(Part { factor: Factor { least: 0.0, most, kept, left_out }, peak: lost });
             }
         }
         if let Some((indirect, is_all)) = indirect {
@@ -365,7 +384,7 @@ impl<'a> Full<'a> {
             }
             parts.extend(self.by_others(body, material, indirect));
         }
-        self.over_shades(&parts, &shades)
+        self.over_shades(body, plan, &parts, &shades, &pairs)
     }
 
     fn over_white(&self, xyz: [f64; 3]) -> [f64; 3] {
@@ -391,6 +410,7 @@ impl<'a> Full<'a> {
             for light in 0..self.scene.sources.len() {
                 let xyz = &colours[3 * light..3 * light + 3];
                 let factor = Factor {
+                    least: 0.0,
                     most: share * self.reach.lit[other][light],
                     kept: [0.0; 3],
                     left_out: self.over_white([xyz[0], xyz[1], xyz[2]]),
@@ -434,7 +454,7 @@ impl<'a> Full<'a> {
         let peak: Vec<f64> = radiated.iter().map(|value| value * std::f64::consts::FRAC_1_PI).collect();
         (0..3)
             .map(|c| Part {
-                factor: Factor { most: 1.0, kept: [0.0; 3], left_out: unit(c) },
+                factor: Factor { least: 0.0, most: 1.0, kept: [0.0; 3], left_out: unit(c) },
                 peak: if c == 0 { peak.clone() } else { nothing.clone() },
             })
             .collect()
@@ -449,11 +469,25 @@ impl<'a> Full<'a> {
         term.map_or(0.0, |term| TABLE * Interface::new(&term).surrounded().into_iter().fold(0.0, f64::max))
     }
 
-    fn over_shades(&self, parts: &[Part], shades: &[(usize, Factor, Vec<f64>)]) -> Bound {
+    fn over_shades(
+        &self,
+        body: usize,
+        plan: &Choice,
+        parts: &[Part],
+        shades: &[(usize, Factor, Vec<f64>)],
+        pairs: &[(usize, [Option<usize>; 2])],
+    ) -> Bound {
         let lights = shades.len();
         if lights > MOST_SHADES {
             return Self::unknown();
         }
+        // A lobe shines where its light falls in steeply: its brightest rings are never without diffuse light.
+        let brightest = |(light, at): &&(usize, [Option<usize>; 2])| {
+            at[1].map_or(0.0, |at| parts[at].factor.left_out[1].abs() * self.reach.shining[body][*light])
+        };
+        let lobe =
+            pairs.iter().filter(|pair| brightest(pair) > 0.0).max_by(|a, b| brightest(a).total_cmp(&brightest(b)));
+        let lobe = lobe.filter(|_| !plan.has(Effect::Specular));
         let mut all = Bound::ZERO;
         for which in 0..1_usize << lights {
             let mut factors: Vec<Factor> = parts.iter().map(|part| part.factor).collect();
@@ -462,7 +496,21 @@ impl<'a> Full<'a> {
                 factors[*at] = *factor;
                 spectra[*at] = shadow;
             }
-            all = all.larger(self.found(&factors, &spectra));
+            let Some((light, [base, Some(lobe)])) = lobe else {
+                all = all.larger(self.found(&factors, &spectra));
+                continue;
+            };
+            // In the shade of this light there is neither; the rings are of places that it reaches.
+            let hidden = Factor { least: 0.0, most: 0.0, ..factors[*lobe] };
+            let rings = self.reach.rings[body][*light].iter().map(|ring| (ring.shining, ring.least_lit));
+            for (shining, least) in rings.chain([(hidden.most, 0.0)]) {
+                let mut factors = factors.clone();
+                factors[*lobe].most = shining;
+                if let Some(base) = base {
+                    factors[*base].least = least.min(factors[*base].most);
+                }
+                all = all.larger(self.found(&factors, &spectra));
+            }
         }
         all
     }
@@ -512,8 +560,12 @@ fn merge(parts: &mut Vec<Part>, part: Part) {
             let xyz = sum(&old.factor);
             old.peak =
                 old.peak.iter().zip(&part.peak).map(|(a, b)| old.factor.most * a + part.factor.most * b).collect();
-            old.factor =
-                Factor { most: 1.0, kept: [0.0; 3], left_out: [0, 1, 2].map(|c| (xyz[c] + new[c]) * (1.0 + 1e-12)) };
+            old.factor = Factor {
+                least: 0.0,
+                most: 1.0,
+                kept: [0.0; 3],
+                left_out: [0, 1, 2].map(|c| (xyz[c] + new[c]) * (1.0 + 1e-12)),
+            };
         }
         None => parts.push(part),
     }

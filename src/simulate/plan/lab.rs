@@ -1,6 +1,6 @@
 //! The largest CIELAB distance that leaving something out can make, proven by intervals.
 //!
-//! A pixel is a sum of colours with factors that lie between 0 and a largest value. Some of the colours are left out. The distance
+//! A pixel is a sum of colours with factors that lie between a least and a largest value. Some of the colours are left out. The distance
 //! between the whole and what is left is bounded on boxes of factors, and boxes are halved where the bound is largest, until it is close
 //! to a distance that does occur. f of CIE 15 grows everywhere and ever less steeply, so that its differences are bounded by its
 //! values at the ends and by its slope there.
@@ -8,7 +8,9 @@
 /// A factor, with the colours that it multiplies: XYZ over that of white.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Factor {
-    /// Its largest value; the least is 0.
+    /// Its least value.
+    pub(super) least: f64,
+    /// Its largest value.
     pub(super) most: f64,
     /// In the picture as planned.
     pub(super) kept: [f64; 3],
@@ -70,7 +72,8 @@ pub(super) fn largest(factors: &[Factor]) -> Largest {
     }
     let high: Vec<f64> = factors.iter().map(|one| one.most).collect();
     let mut best = (0.0, [[0.0; 3]; 2]);
-    let mut boxes = vec![on(&factors, vec![0.0; high.len()], high, &mut best)];
+    let low: Vec<f64> = factors.iter().map(|one| one.least).collect();
+    let mut boxes = vec![on(&factors, low, high, &mut best)];
     for _ in 0..BOXES {
         let Some(worst) = (0..boxes.len()).max_by(|a, b| boxes[*a].bound.total_cmp(&boxes[*b].bound)) else { break };
         // The last factor is for values that neither matters for.
@@ -160,8 +163,10 @@ mod tests {
         for _ in 0..200 {
             let count = 1 + (4.0 * random()) as usize;
             let factors: Vec<Factor> = (0..count)
-                .map(|_| Factor {
-                    most: 3.0 * random().powi(3),
+                .map(|_| (random(), 3.0 * random().powi(3)))
+                .map(|(part, most)| Factor {
+                    least: if part < 0.7 { 0.0 } else { (part - 0.7) * most },
+                    most,
                     kept: [random(), random(), random()],
                     left_out: [0; 3].map(|_| if random() < 0.5 { 0.0 } else { 0.3 * (random() - 0.3) }),
                 })
@@ -169,8 +174,10 @@ mod tests {
             let found = largest(&factors);
             let mut most = 0.0_f64;
             for _ in 0..2000 {
-                let g: Vec<f64> =
-                    factors.iter().map(|one| one.most * if random() < 0.3 { 0.0 } else { random() }).collect();
+                let g: Vec<f64> = factors
+                    .iter()
+                    .map(|one| one.least + (one.most - one.least) * if random() < 0.3 { 0.0 } else { random() })
+                    .collect();
                 let of = |c: usize, full: f64| {
                     factors.iter().zip(&g).map(|(one, g)| g * (one.kept[c] + full * one.left_out[c])).sum::<f64>()
                 };

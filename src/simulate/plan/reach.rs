@@ -1,5 +1,7 @@
 //! How much light may reach a body, and which bodies may stand in each other's light or see each other.
 
+use std::f64::consts::FRAC_PI_2;
+
 use super::super::camera::Projection;
 use super::super::interface::Interface;
 use super::super::scene::{Body, Scene};
@@ -43,12 +45,11 @@ pub(super) fn most_lit(shape: &Shape, source: &Source) -> f64 {
     }
 }
 
-/// Largest irradiance across the beam.
-fn strength(shape: &Shape, source: &Source) -> f64 {
-    match source.place {
-        Place::Point(place, reference) => (reference / distance(shape, place)).powi(2),
-        Place::Directional(_) | Place::Surround => 1.0,
-    }
+/// Least and largest irradiance across the beam.
+fn strengths(shape: &Shape, source: &Source) -> (f64, f64) {
+    let Place::Point(place, reference) = source.place else { return (1.0, 1.0) };
+    let far = shape.around().map_or(f64::INFINITY, |(centre, radius)| length(minus(place, centre)) + radius);
+    ((reference / far).powi(2), (reference / distance(shape, place)).powi(2))
 }
 
 /// Directions from a body to a place.
@@ -59,8 +60,21 @@ fn to_place(shape: &Shape, place: Vector) -> Option<Cone> {
     (far > radius).then(|| Cone { axis: scaled(way, 1.0 / far), half: (radius / far).asin() })
 }
 
-/// Largest D F G / den on a body under a light, times the strength of the light; infinite where nothing bounds it.
-pub(super) fn most_shining(scene: &Scene, body: &Body, source: &Source, interface: &Interface) -> f64 {
+/// Places of a body whose normal stands between two angles from the half vector.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Ring {
+    /// Largest D F G / den there, times the strength of the light; infinite where nothing bounds it.
+    pub(super) shining: f64,
+    /// Least cos(theta_i) times the strength, where the light is not hidden.
+    pub(super) least_lit: f64,
+}
+
+/// Edges of the rings, in half widths of a lobe about as wide as it is.
+const EDGES: [f64; 12] = [0.0, 0.25, 0.5, 0.75, 1.0, 1.25, 1.5, 2.0, 2.5, 3.0, 4.0, 6.0];
+
+/// The rings of a body that a light may shine in; one without an end where nothing bounds it.
+pub(super) fn rings(scene: &Scene, body: &Body, source: &Source, interface: &Interface) -> Vec<Ring> {
+    let unknown = vec![Ring { shining: f64::INFINITY, least_lit: 0.0 }];
     let shape = &body.shape;
     let light = match source.place {
         Place::Directional(towards) => Some(Cone { axis: towards, half: 0.0 }),
@@ -71,31 +85,38 @@ pub(super) fn most_shining(scene: &Scene, body: &Body, source: &Source, interfac
         Projection::Orthographic { .. } => Some(Cone { axis: scaled(scene.camera.axes[2], -1.0), half: 0.0 }),
         Projection::Perspective { .. } => to_place(shape, scene.camera.place),
     };
-    let (Some(light), Some(view)) = (light, view) else { return f64::INFINITY };
+    let (Some(light), Some(view)) = (light, view) else { return unknown };
     let sum = plus(light.axis, view.axis);
-    let long = length(sum);
-    let spread = light.half + view.half;
+    let (long, spread) = (length(sum), light.half + view.half);
     // The half vector of directions that are off by angles a and b is off by at most asin((a + b) / |L + V|).
-    let Some(half) = unit(sum).filter(|_| spread < long) else { return f64::INFINITY };
+    let Some(half) = unit(sum).filter(|_| spread < long) else { return unknown };
     let off = (spread / long).min(1.0).asin();
-    let apart = 2.0 * (0.5 * length(minus(light.axis, view.axis))).min(1.0).asin();
-    let least_cos_q = (0.5 * (apart + spread)).min(std::f64::consts::FRAC_PI_2).cos();
+    let angle = |a: Vector, b: Vector| 2.0 * (0.5 * length(minus(a, b))).min(1.0).asin();
+    let theta_q = (0.5 * (angle(light.axis, view.axis) + spread)).min(FRAC_PI_2);
     let seen = |normal: Vector| {
         let faces = |cone: &Cone| dot(normal, cone.axis) > -cone.half.sin() || cone.half > 1.5;
-        if !(faces(&light) && faces(&view)) {
-            return 0.0;
-        }
-        let phi = 2.0 * (0.5 * length(minus(normal, half))).min(1.0).asin();
-        interface.most((phi - off - 1e-9).max(0.0), least_cos_q)
+        (faces(&light) && faces(&view)).then(|| (angle(normal, half) - off - 1e-9).max(0.0))
     };
-    let both = |normal: Vector| seen(normal).max(seen(scaled(normal, -1.0)));
-    let most = match shape {
-        Shape::Sphere(_) => interface.most(0.0, least_cos_q),
+    let both =
+        |normal: Vector| [seen(normal), seen(scaled(normal, -1.0))].into_iter().flatten().fold(f64::INFINITY, f64::min);
+    let nearest = match shape {
+        Shape::Sphere(_) => 0.0,
         Shape::Plane(plane) => both(plane.normal),
-        Shape::Box(cuboid) => cuboid.axes.iter().map(|axis| both(*axis)).fold(0.0, f64::max),
-        Shape::Mesh(mesh) => mesh.normals().map(both).fold(0.0, f64::max),
+        Shape::Box(cuboid) => cuboid.axes.iter().map(|axis| both(*axis)).fold(f64::INFINITY, f64::min),
+        Shape::Mesh(mesh) => mesh.normals().map(both).fold(f64::INFINITY, f64::min),
     };
-    if most == 0.0 { 0.0 } else { most * strength(shape, source) }
+    let (least, most) = strengths(shape, source);
+    let mut edges: Vec<f64> =
+        EDGES.iter().map(|edge| edge * interface.half_width()).filter(|edge| *edge < FRAC_PI_2).collect();
+    edges.push(FRAC_PI_2);
+    let ring = |(from, to): (f64, f64)| {
+        let value = interface.most(from.max(nearest), to, theta_q.cos().max(0.0));
+        Ring {
+            shining: if value == 0.0 { 0.0 } else { value * most },
+            least_lit: (theta_q + to).min(FRAC_PI_2).cos().max(0.0) * least,
+        }
+    };
+    edges.windows(2).map(|pair| (pair[0], pair[1])).filter(|(_, to)| *to >= nearest).map(ring).collect()
 }
 
 /// True where all of a body is looked at from outside.
