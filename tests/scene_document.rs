@@ -2,7 +2,7 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test")]
 
 use bbrf::donaldson::{Light, Observer, Reradiation};
-use bbrf::simulate::document::{Corners, Library, NotAScene, Resolved, SceneDocument, Source};
+use bbrf::simulate::document::{Corners, Library, NotAScene, Points, Resolved, SceneDocument, Source};
 use bbrf::simulate::{Bounces, Kept, Material, Place, Shape};
 use ndarray::Array2;
 
@@ -23,7 +23,7 @@ impl Library for Shelf {
         }
     }
 
-    fn reflectance(&mut self, _: &str) -> Result<(Vec<(f64, f64)>, Vec<String>), String> {
+    fn reflectance(&mut self, _: &str) -> Result<(Points, Vec<String>), String> {
         Ok((vec![(400.0, 0.2), (700.0, 0.6)], Vec::new()))
     }
 
@@ -244,7 +244,7 @@ fn a_light_that_stops_where_a_material_is_excited_is_a_warning() {
             Ok((Material { name: String::new(), surface, specular: None, intensity: Vec::new() }, Vec::new()))
         }
 
-        fn reflectance(&mut self, file: &str) -> Result<(Vec<(f64, f64)>, Vec<String>), String> {
+        fn reflectance(&mut self, file: &str) -> Result<(Points, Vec<String>), String> {
             Shelf.reflectance(file)
         }
 
