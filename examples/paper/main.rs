@@ -13,6 +13,7 @@ mod picture;
 #[path = "../../testdata/simulated_scan/scan/mod.rs"]
 mod scan;
 mod sheet;
+mod sphere;
 mod yellow_paint;
 
 use std::error::Error;

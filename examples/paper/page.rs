@@ -10,6 +10,7 @@ use crate::fitted::{Fitted, read_all};
 use crate::matrix::{Compared, compare};
 use crate::picture::all;
 use crate::sheet::{Sheet, counted, covered, percent, range, with_uncertainty};
+use crate::sphere::Sphere;
 
 /// The objects that the paper shows.
 const SHOWN: [(&str, &str); 3] = [
@@ -199,11 +200,25 @@ impl Sheet<'_> {
             let part = picture.file_stem().unwrap_or_default().to_string_lossy().into_owned();
             self.show("sphere", &format!("{part}.png"), &format!("fig6-{part}"), &part)?;
         }
-        self.say(
+        let found = Sphere::read(&folder.join("render.json"), &self.folder.join("sphere.toml"))?;
+        self.say(&format!(
             "\n**The paper** shows a sphere of that paint under the artificial sun and its three parts, with roughness 0.05, index 1.45 \
              and specular intensity 30: luminescence differs clearly from the others, and the highlight has the colour of the light.\n\n\
-             **Here** the same scene, `examples/paper/sphere.toml`, with the estimated matrix, drawn by `bbrf render`.",
-        );
+             **Here** the same scene, `examples/paper/sphere.toml`, with the estimated matrix, drawn by `bbrf render`; where light and \
+             camera stand the paper does not say. Of all light to the eye (Y) {} is luminescence and {} comes from the interface. The \
+             highlight stands at column {}, row {}; the normal halves the way from the light to the eye at {}, {}. There the interface \
+             alone is {:.2} as bright as white, and its x and y differ from the light's by {:.4}. The luminescence is greener than a \
+             display: {} of its pixels on the sphere are no colours of sRGB and are shown paler.",
+            percent(found.luminescent_share),
+            percent(found.specular_share),
+            found.pixel.0,
+            found.pixel.1,
+            found.mirror.0,
+            found.mirror.1,
+            found.highlight,
+            found.from_light,
+            percent(found.outside),
+        ));
         Ok(())
     }
 }

@@ -22,9 +22,16 @@ pub(crate) struct Versioned<'a, T: Serialize> {
 /// # Errors
 /// As [`print_bytes`].
 pub(crate) fn print_json<T: Serialize>(schema: &str, result: &T) -> Result<(), miette::Report> {
-    let text = serde_json::to_string_pretty(&Versioned { schema, result })
-        .map_err(|error| miette!("the result cannot be written as JSON: {error}"))?;
-    print_text(&text)
+    print_text(&json_text(schema, result)?)
+}
+
+/// A result as JSON.
+///
+/// # Errors
+/// When a value of it has no form in JSON.
+pub(crate) fn json_text<T: Serialize>(schema: &str, result: &T) -> Result<String, miette::Report> {
+    serde_json::to_string_pretty(&Versioned { schema, result })
+        .map_err(|error| miette!("the result cannot be written as JSON: {error}"))
 }
 
 /// Prints text and a line break on stdout.

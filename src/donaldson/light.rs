@@ -156,7 +156,7 @@ impl Light {
     pub fn within(&self, from: f64, to: f64) -> Option<Self> {
         let (low, high) = self.range_nm();
         let (from, to) = (from.max(low), to.min(high));
-        if !(from < to) {
+        if from >= to || from.is_nan() || to.is_nan() {
             return None;
         }
         let inner = self.nm().iter().copied().filter(|nm| *nm > from && *nm < to);

@@ -9,6 +9,7 @@ use crate::dataset::{Document, Model};
 use crate::donaldson::{Complete, Luminescence, Reradiation};
 use crate::quantity::{Basis, Part};
 use crate::simulate::Material;
+use crate::simulate::document::Points;
 use crate::terms::{Term, TermKind, TorranceSparrow};
 
 type Found = Result<(Material, Vec<String>), miette::Report>;
@@ -121,7 +122,7 @@ fn refused(path: &str, id: &str, why: &str) -> miette::Report {
 }
 
 /// The one term of all wavelengths, and its intensity at each.
-fn one_interface(bands: &Bands) -> Result<(Option<TorranceSparrow>, Vec<(f64, f64)>), String> {
+fn one_interface(bands: &Bands) -> Result<(Option<TorranceSparrow>, Points), String> {
     if let Some((_, several)) = bands.iter().find(|(_, terms)| terms.len() > 1) {
         return Err(format!("found {} specular terms", several.len()));
     }

@@ -13,7 +13,7 @@ use super::output::print_message;
 use crate::donaldson::Light;
 use crate::quantity::QuantityKind;
 use crate::simulate::Material;
-use crate::simulate::document::{Corners, Library, Resolved, SceneDocument, Source};
+use crate::simulate::document::{Corners, Library, Points, Resolved, SceneDocument, Source};
 
 /// Most bytes of a description.
 const MOST_BYTES: u64 = 16 << 20;
@@ -76,7 +76,7 @@ impl Library for Files {
         material::load(&path, source.model, source.matrix).map_err(|report| sentence(&report))
     }
 
-    fn reflectance(&mut self, file: &str) -> Result<(Vec<(f64, f64)>, Vec<String>), String> {
+    fn reflectance(&mut self, file: &str) -> Result<(Points, Vec<String>), String> {
         let path = self.beside(file)?;
         if !Path::new(split(&path).0).is_file() {
             return Err(format!("found no file {path}; expected a text of two columns (nm, share)"));

@@ -57,7 +57,7 @@ impl MaterialSection {
             ));
         }
         let mut material = if let Some(albedo) = self.albedo {
-            if !(albedo >= 0.0) {
+            if albedo < 0.0 {
                 return Err(with.error(&way, "albedo", format!("found {albedo}; expected a number from 0")));
             }
             lambertian(&ALL_NM, vec![albedo; 2]).ok_or_else(|| with.error(&way, "albedo", "found no number"))?

@@ -16,7 +16,7 @@ pub use lights::LightSection;
 pub use materials::MaterialSection;
 pub use objects::{BoxSection, MeshSection, ObjectSection, PlaneSection, SphereSection};
 pub use place::NotAScene;
-pub use resolve::{Corners, Library, Resolved, Source};
+pub use resolve::{Corners, Library, Points, Resolved, Source};
 
 use self::place::Places;
 

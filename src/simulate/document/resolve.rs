@@ -38,6 +38,9 @@ pub struct Corners {
     pub triangles: Vec<[usize; 3]>,
 }
 
+/// A value at each wavelength: (nm, value), ascending.
+pub type Points = Vec<(f64, f64)>;
+
 /// What a scene names, from wherever it is kept. Each gives what was asked for with remarks on how it was read, or a sentence on
 /// why not.
 pub trait Library {
@@ -50,7 +53,7 @@ pub trait Library {
     ///
     /// # Errors
     /// A sentence.
-    fn reflectance(&mut self, file: &str) -> Result<(Vec<(f64, f64)>, Vec<String>), String>;
+    fn reflectance(&mut self, file: &str) -> Result<(Points, Vec<String>), String>;
     /// A spectrum of light.
     ///
     /// # Errors
@@ -165,7 +168,7 @@ fn check_film(film: &FilmSection, places: &Places<'_>) -> Result<(), NotAScene> 
     if !(1..=MOST_SAMPLES).contains(&film.samples) {
         return wrong("samples", format!("found {}; expected 1 to {MOST_SAMPLES}", film.samples));
     }
-    if !(film.exposure > 0.0) {
+    if film.exposure <= 0.0 {
         return wrong("exposure", format!("found {}; expected a number above 0", film.exposure));
     }
     Ok(())

@@ -21,6 +21,7 @@ pub(super) fn encode(
     picture: &Picture,
     resolved: &Resolved,
     gamut: Gamut,
+    depth: Depth,
 ) -> Result<(Files, Vec<Drawn>), miette::Report> {
     let scene = &resolved.scene;
     let notes: Vec<(String, String)> = vec![
@@ -30,7 +31,7 @@ pub(super) fn encode(
     ];
     let display = Srgb::new(picture.white, resolved.exposure).map_err(|error| miette!("{error}"))?;
     let linear = Srgb::new(picture.white, 1.0).map_err(|error| miette!("{error}"))?;
-    let png = Png { display, gamut, depth: Depth::Sixteen };
+    let png = Png { display, gamut, depth };
     let (mut files, mut drawn, mut parts) = (Vec::new(), Vec::new(), Vec::new());
     for (layer, planes) in &picture.layers {
         let film = picture.film(scene, *layer).map_err(|error| miette!("{error}"))?;

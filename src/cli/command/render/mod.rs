@@ -10,10 +10,10 @@ use miette::miette;
 
 use crate::cli::command::plan::Tolerance;
 use crate::cli::exit::{CommandResult, Outcome};
-use crate::cli::output::{print_json, print_message, print_text, write_output};
+use crate::cli::output::{json_text, print_json, print_message, print_text, write_output};
 use crate::cli::overwrite::refuse_overwriting;
 use crate::cli::scene_source;
-use crate::simulate::image::Gamut;
+use crate::simulate::image::{Depth, Gamut};
 use crate::simulate::{Choice, Kept, Layer};
 pub(crate) use result::RenderResult;
 
@@ -23,6 +23,8 @@ Examples:
   bbrf render room.toml -o room --samples 256 --seed 7 --threads 8
   bbrf render room.toml -o room --spectra --layers total,luminescent --json";
 
+/// The schema of what is printed.
+const SCHEMA: &str = "bbrf:render:1";
 /// What describes the images.
 const RECORD: &str = "render.json";
 /// All layers in single precision.
@@ -66,6 +68,9 @@ pub(crate) struct Arguments {
     /// Simulate everything in full, with the whole product at every pixel: what plans are held against
     #[arg(long, conflicts_with = "max_delta_e")]
     everything: bool,
+    /// Bits per channel of the PNGs: 8 or 16
+    #[arg(long, default_value = "8")]
+    depth: Depth,
     /// Print what `render.json` holds
     #[arg(long)]
     json: bool,
@@ -101,11 +106,11 @@ pub(crate) fn run(arguments: &Arguments) -> CommandResult {
             *layer != Layer::Interreflection || planes.iter().flatten().any(|value| *value != 0.0)
         });
     }
-    let (files, drawn) = images::encode(&picture, resolved, arguments.gamut)?;
+    let (files, drawn) = images::encode(&picture, resolved, arguments.gamut, arguments.depth)?;
     let result = RenderResult::new(&place, resolved, plan, &picture, drawn);
     write(&arguments.output, &files, &result)?;
     if arguments.json {
-        print_json("bbrf:render:1", &result)?;
+        print_json(SCHEMA, &result)?;
     } else {
         print_text(&result.text(&arguments.output))?;
     }
@@ -131,8 +136,7 @@ fn write(folder: &Path, files: &[(String, Vec<u8>)], result: &RenderResult) -> R
     for (name, bytes) in files {
         write_output(&folder.join(name), bytes)?;
     }
-    let text = result.json().map_err(|error| miette!("{error}"))?;
-    write_output(&record, text.as_bytes())?;
+    write_output(&record, (json_text(SCHEMA, result)? + "\n").as_bytes())?;
     print_message(&format!("bbrf: wrote {} images to {}", files.len(), folder.display()));
     Ok(())
 }

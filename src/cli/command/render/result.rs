@@ -152,15 +152,6 @@ impl RenderResult {
         }
     }
 
-    /// The file, with the name of its schema.
-    pub(super) fn json(&self) -> serde_json::Result<String> {
-        let mut value = serde_json::to_value(self)?;
-        if let Some(object) = value.as_object_mut() {
-            object.insert("schema".to_owned(), "bbrf:render:1".into());
-        }
-        Ok(serde_json::to_string_pretty(&value)? + "\n")
-    }
-
     pub(super) fn text(&self, folder: &Path) -> String {
         let mut text = String::new();
         for one in &self.layers {

@@ -1,0 +1,251 @@
+//! `bbrf render`: from a scene and a file to images.
+#![cfg(feature = "write")]
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test")]
+
+mod common {
+    pub mod bispectral;
+}
+
+use std::path::{Path, PathBuf};
+
+use assert_cmd::Command;
+use bbrf::container::write_file;
+use bbrf::dataset::Document;
+use predicates::prelude::PredicateBooleanExt;
+use predicates::str::contains;
+use serde_json::Value;
+
+fn bbrf() -> Command {
+    Command::cargo_bin("bbrf").unwrap()
+}
+
+const SPHERE: &str = r#"bounces = 0
+[film]
+width = 48
+height = 32
+samples = 4
+[wavelengths]
+from = 300
+to = 780
+step = 10
+[camera]
+projection = "orthographic"
+width = 3
+from = [0, 0, 5]
+at = [0, 0, 0]
+[[material]]
+name = "orange"
+file = "orange.bbrf"
+specular = { intensity = 30, roughness = 0.05, refractive_index = 1.45 }
+[[light]]
+spectrum = "D65"
+towards = [0, 0, 1]
+[[object]]
+material = "orange"
+sphere = { centre = [0, 0, 0], radius = 1 }
+"#;
+
+/// A dimmer orange on a white floor: light goes from one to the other, and none comes from nowhere.
+fn room() -> String {
+    let floor = "[[material]]\nname = \"white\"\nalbedo = 0.8\n\
+        [[object]]\nmaterial = \"white\"\nplane = { point = [0, -1, 0], normal = [0, 1, 0] }\n";
+    let light =
+        SPHERE.replace("towards = [0, 0, 1]", "towards = [1, 1, 1]").replace("from = [0, 0, 5]", "from = [0, 2, 5]");
+    light
+        .replace("bounces = 0", "bounces = 3")
+        .replace("intensity = 30", "intensity = 3")
+        .replace("orange.bbrf", "dim.bbrf")
+        + floor
+}
+
+/// A scene beside the files that it may name.
+fn scene(folder: &Path, text: &str) -> PathBuf {
+    let document = Document { license: Some("CC-BY-4.0".to_owned()), ..common::bispectral::document() };
+    write_file(&document, &folder.join("orange.bbrf")).unwrap();
+    let (excitation, emission, values) = common::bispectral::values(10.0);
+    let sigma = Some(values.mapv(|_| 0.001));
+    let dim = common::bispectral::measurement("dim", &excitation, &emission, 0.8 * values, sigma, None);
+    let document = Document { measurements: vec![dim], ..document };
+    write_file(&document, &folder.join("dim.bbrf")).unwrap();
+    let path = folder.join("scene.toml");
+    std::fs::write(&path, text).unwrap();
+    path
+}
+
+fn names(folder: &Path) -> Vec<String> {
+    let mut names: Vec<String> =
+        std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+    names.sort();
+    names
+}
+
+fn record(folder: &Path) -> Value {
+    serde_json::from_slice(&std::fs::read(folder.join("render.json")).unwrap()).unwrap()
+}
+
+fn layer<'a>(record: &'a Value, name: &str) -> &'a Value {
+    record["layers"].as_array().unwrap().iter().find(|layer| layer["layer"] == name).unwrap()
+}
+
+#[test]
+fn a_fluorescent_sphere_is_drawn_with_its_parts() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = scene(folder.path(), SPHERE);
+    let out = folder.path().join("out");
+    let run =
+        bbrf().arg("render").arg(&scene).arg("-o").arg(&out).arg("--json").assert().success().get_output().clone();
+    assert_eq!(
+        names(&out),
+        ["diffuse.png", "layers.exr", "luminescent.png", "render.json", "specular.png", "total.png"]
+    );
+    let printed: Value = serde_json::from_slice(&run.stdout).unwrap();
+    let record = record(&out);
+    assert_eq!(printed, record);
+    let schema = bbrf().args(["schema", "render"]).assert().success().get_output().stdout.clone();
+    let schema: Value = serde_json::from_slice(&schema).unwrap();
+    jsonschema::validator_for(&schema).unwrap().validate(&record).unwrap();
+    assert_eq!(record["schema"], "bbrf:render:1");
+    // A sphere under one lamp has a closed form: nothing is drawn at random.
+    assert_eq!(record["noise"], Value::Null);
+    let mean = |name: &str| layer(&record, name)["mean"][1].as_f64().unwrap();
+    for name in ["luminescent", "diffuse", "specular"] {
+        assert!(mean(name) > 0.0, "{name}");
+    }
+    let sum = mean("luminescent") + mean("diffuse") + mean("specular");
+    assert!((mean("total") - sum).abs() < 1e-6 * sum, "{} {sum}", mean("total"));
+    // The lamp stands behind the eye: the highlight is in the middle.
+    let at = &layer(&record, "specular")["brightest"];
+    let (column, row) = (at["column"].as_u64().unwrap(), at["row"].as_u64().unwrap());
+    assert!((23..=24).contains(&column) && (15..=16).contains(&row), "{at}");
+    let png = png::Decoder::new(std::io::BufReader::new(std::fs::File::open(out.join("total.png")).unwrap()));
+    let reader = png.read_info().unwrap();
+    assert_eq!((reader.info().width, reader.info().height), (48, 32));
+}
+
+#[test]
+fn the_same_scene_has_the_same_bytes_whatever_the_threads() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = scene(folder.path(), &room());
+    let draw = |name: &str, more: &[&str]| {
+        let out = folder.path().join(name);
+        bbrf().arg("render").arg(&scene).arg("-o").arg(&out).args(more).assert().success();
+        out
+    };
+    let one = draw("one", &["--threads", "1"]);
+    let two = draw("two", &["--threads", "3"]);
+    let other = draw("other", &["--seed", "2"]);
+    assert!(names(&one).contains(&"interreflection.png".to_owned()), "{:?}", names(&one));
+    assert_eq!(names(&one), names(&two));
+    for name in names(&one) {
+        assert!(std::fs::read(one.join(&name)).unwrap() == std::fs::read(two.join(&name)).unwrap(), "{name}");
+    }
+    assert!(std::fs::read(one.join("layers.exr")).unwrap() != std::fs::read(other.join("layers.exr")).unwrap());
+    let noise = &record(&one)["noise"];
+    assert!(noise["largest"].as_f64().unwrap() >= noise["median"].as_f64().unwrap());
+    assert!(noise["largest"].as_f64().unwrap() > 0.0);
+}
+
+#[test]
+fn layers_are_those_that_are_asked_for_and_none_of_an_earlier_image_stays() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = scene(folder.path(), SPHERE);
+    let out = folder.path().join("out");
+    bbrf().arg("render").arg(&scene).arg("-o").arg(&out).assert().success();
+    std::fs::write(out.join("notes.txt"), "mine").unwrap();
+    bbrf().arg("render").arg(&scene).arg("-o").arg(&out).args(["--layers", "total,luminescent"]).assert().success();
+    assert_eq!(names(&out), ["layers.exr", "luminescent.png", "notes.txt", "render.json", "total.png"]);
+}
+
+#[test]
+fn spectra_look_like_their_colours() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = scene(folder.path(), SPHERE);
+    let draw = |name: &str, more: &[&str]| {
+        let out = folder.path().join(name);
+        bbrf().arg("render").arg(&scene).arg("-o").arg(&out).args(more).assert().success();
+        out
+    };
+    let (colours, spectra) = (draw("colours", &[]), draw("spectra", &["--spectra"]));
+    let mean = |out: &Path| layer(&record(out), "total")["mean"].clone();
+    for c in 0..3 {
+        let (a, b) = (mean(&colours)[c].as_f64().unwrap(), mean(&spectra)[c].as_f64().unwrap());
+        assert!((a - b).abs() < 1e-5 * a, "{a} {b}");
+    }
+    let size = |out: &Path| std::fs::metadata(out.join("layers.exr")).unwrap().len();
+    assert!(size(&spectra) > 3 * size(&colours), "49 wavelengths beside 3 colours");
+    assert_eq!(record(&spectra)["kept"], "spectra");
+}
+
+#[test]
+fn an_error_names_the_scene_its_line_and_key_and_writes_nothing() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out");
+    let wrong = |old: &str, new: &str, expected: &str| {
+        let scene = scene(folder.path(), &SPHERE.replacen(old, new, 1));
+        let run = bbrf().arg("render").arg(scene).arg("-o").arg(&out).assert().code(2);
+        run.stderr(contains("scene.toml, line ").and(contains(expected)));
+        assert!(!out.exists(), "{new}");
+    };
+    wrong("radius = 1", "radius = 0", "`object.sphere.radius`: found 0");
+    wrong("file = \"orange.bbrf\"", "file = \"apple.bbrf\"", "`material.file`:");
+    wrong("file = \"orange.bbrf\"", "file = \"orange.bbrf\"\nmatrix = \"apple\"", "no measurement `apple`");
+    wrong(
+        "file = \"orange.bbrf\"",
+        "file = \"orange.bbrf\"\nmodel = \"apple\"",
+        "no model `apple`; the file holds: none",
+    );
+    wrong("spectrum = \"D65\"", "spectrum = \"lamp.csv\"", "found neither a file nor a light of the CIE");
+    wrong(
+        "sphere = { centre = [0, 0, 0], radius = 1 }",
+        "mesh = { file = \"three.ply\" }",
+        "expected a Wavefront file",
+    );
+}
+
+#[test]
+fn what_is_read_is_never_written_over() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = scene(folder.path(), SPHERE);
+    std::fs::rename(&scene, folder.path().join("render.json")).unwrap();
+    let run = bbrf().arg("render").arg(folder.path().join("render.json")).arg("-o").arg(folder.path()).assert().code(2);
+    run.stderr(contains("would be overwritten"));
+}
+
+#[test]
+fn a_scene_that_multiplies_light_may_be_shown_and_not_bounce() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = room().replace("albedo = 0.8", "albedo = 1.2");
+    let path = scene(folder.path(), &text);
+    let out = folder.path().join("out");
+    let run = bbrf().arg("render").arg(&path).arg("-o").arg(&out).assert().code(2);
+    run.stderr(contains("material `white` sends back up to 1.2").and(contains("bounces = 0")));
+    let path = scene(folder.path(), &text.replace("bounces = 3", "bounces = 0"));
+    bbrf().arg("render").arg(&path).arg("-o").arg(&out).assert().success();
+}
+
+#[cfg(unix)]
+#[test]
+fn ctrl_c_leaves_no_file() {
+    use std::io::Read;
+    let folder = tempfile::tempdir().unwrap();
+    let text = room().replace("samples = 4", "samples = 100000");
+    let path = scene(folder.path(), &text);
+    let out = folder.path().join("out");
+    let program = assert_cmd::cargo::cargo_bin("bbrf");
+    let mut child = std::process::Command::new(program)
+        .arg("render")
+        .args([&path, Path::new("-o"), &out])
+        .stderr(std::process::Stdio::piped())
+        .spawn()
+        .unwrap();
+    // Long enough for the work to begin, and far from its end.
+    std::thread::sleep(std::time::Duration::from_secs(2));
+    let status = std::process::Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
+    assert!(status.success());
+    let ended = child.wait().unwrap();
+    let mut said = String::new();
+    child.stderr.take().unwrap().read_to_string(&mut said).unwrap();
+    assert_eq!(ended.code(), Some(2), "{said}");
+    assert!(said.contains("interrupted after") && said.contains("nothing was written"), "{said}");
+    assert!(!out.exists());
+}
