@@ -485,8 +485,11 @@ impl<'a> Full<'a> {
         let brightest = |(light, at): &&(usize, [Option<usize>; 2])| {
             at[1].map_or(0.0, |at| parts[at].factor.left_out[1].abs() * self.reach.shining[body][*light])
         };
-        let lobe =
-            pairs.iter().filter(|pair| brightest(pair) > 0.0).max_by(|a, b| brightest(a).total_cmp(&brightest(b)));
+        let has_rings = |light: usize| !self.reach.rings[body][light].is_empty();
+        let lobe = pairs
+            .iter()
+            .filter(|pair| has_rings(pair.0) && brightest(pair) > 0.0)
+            .max_by(|a, b| brightest(a).total_cmp(&brightest(b)));
         let lobe = lobe.filter(|_| !plan.has(Effect::Specular));
         let mut all = Bound::ZERO;
         for which in 0..1_usize << lights {

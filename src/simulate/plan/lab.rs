@@ -163,12 +163,14 @@ mod tests {
         for _ in 0..200 {
             let count = 1 + (4.0 * random()) as usize;
             let factors: Vec<Factor> = (0..count)
-                .map(|_| (random(), 3.0 * random().powi(3)))
-                .map(|(part, most)| Factor {
-                    least: if part < 0.7 { 0.0 } else { (part - 0.7) * most },
-                    most,
-                    kept: [random(), random(), random()],
-                    left_out: [0; 3].map(|_| if random() < 0.5 { 0.0 } else { 0.3 * (random() - 0.3) }),
+                .map(|_| {
+                    let (part, most) = (random(), 3.0 * random().powi(3));
+                    Factor {
+                        least: if part < 0.7 { 0.0 } else { (part - 0.7) * most },
+                        most,
+                        kept: [random(), random(), random()],
+                        left_out: [0; 3].map(|_| if random() < 0.5 { 0.0 } else { 0.3 * (random() - 0.3) }),
+                    }
                 })
                 .collect();
             let found = largest(&factors);
