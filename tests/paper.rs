@@ -21,6 +21,8 @@ mod picture;
 mod scan;
 #[path = "../examples/paper/sheet.rs"]
 mod sheet;
+#[path = "../examples/paper/sphere.rs"]
+mod sphere;
 #[path = "../examples/paper/yellow_paint.rs"]
 mod yellow_paint;
 

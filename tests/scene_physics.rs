@@ -87,9 +87,9 @@ fn series(scene: &Scene, strength: f64, bounces: Bounces) -> Vec<f64> {
         for j in 0..count {
             out[j] = at(j) * incident[j];
             if surface.emission_nm.len() > 2 {
-                for i in 0..count {
+                for (i, e) in incident.iter().enumerate() {
                     let width = if i == 0 || i == count - 1 { step / 2.0 } else { step };
-                    out[j] += surface.density[(i, j)] * width * incident[i];
+                    out[j] += surface.density[(i, j)] * width * e;
                 }
             }
         }
