@@ -249,3 +249,58 @@ fn ctrl_c_leaves_no_file() {
     assert!(said.contains("interrupted after") && said.contains("nothing was written"), "{said}");
     assert!(!out.exists());
 }
+
+#[test]
+fn the_plan_says_why_and_stands_beside_the_images() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = scene(folder.path(), SPHERE);
+    let plan = bbrf().args(["plan", "--json"]).arg(&scene).output().unwrap();
+    assert!(plan.status.success(), "{}", String::from_utf8_lossy(&plan.stderr));
+    let plan: Value = serde_json::from_slice(&plan.stdout).unwrap();
+    let schema: Value = serde_json::from_str(include_str!("../schema/plan.json")).unwrap();
+    assert!(jsonschema::is_valid(&schema, &plan), "{plan:#}");
+    let shadow = plan["effects"].as_array().unwrap().iter().find(|one| one["effect"] == "shadow").unwrap();
+    assert_eq!(shadow["simulate"], false);
+    assert!(shadow["reason"].as_str().unwrap().contains("one convex body"));
+    bbrf()
+        .arg("plan")
+        .arg(&scene)
+        .assert()
+        .success()
+        .stdout(contains("luminescence").and(contains("changes a pixel by nothing")));
+    bbrf()
+        .arg("plan")
+        .arg(&scene)
+        .args(["--max-delta-e", "-1"])
+        .assert()
+        .code(2)
+        .stderr(contains("expected a number of 0 or more"));
+    let images = folder.path().join("images");
+    bbrf().arg("render").arg(&scene).arg("-o").arg(&images).assert().success().stdout(contains("left out: "));
+    let record: Value = serde_json::from_slice(&std::fs::read(images.join("render.json")).unwrap()).unwrap();
+    assert_eq!(record["plan"]["effects"], plan["effects"]);
+    let full = folder.path().join("full");
+    bbrf().arg("render").arg(&scene).arg("--everything").arg("-o").arg(&full).assert().success();
+    let bytes = |folder: &Path| std::fs::read(folder.join("total.png")).unwrap();
+    assert_eq!(bytes(&images), bytes(&full), "what was left out cannot be seen");
+}
+
+#[test]
+fn a_ladder_of_a_scene_names_the_plan_to_render_with() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = scene(folder.path(), &room());
+    let run = bbrf()
+        .args(["cost", "image", "--patience", "0", "--max-error", "1e-3", "--json"])
+        .arg(&scene)
+        .output()
+        .unwrap();
+    assert!(run.status.success(), "{}", String::from_utf8_lossy(&run.stderr));
+    let found: Value = serde_json::from_slice(&run.stdout).unwrap();
+    let rungs = found["rungs"].as_array().unwrap();
+    let error = |name: &str| rungs.iter().find(|rung| rung["name"] == name).unwrap()["error"].as_f64().unwrap();
+    assert_eq!(error("everything"), 0.0);
+    assert!(error("tolerance 0") < 1e-3 && error("tolerance 10") <= 10.0, "{rungs:#?}");
+    assert!(error("1 samples") > 0.1, "fewer samples are noisier");
+    let answer = found["answer"]["command"].as_str().unwrap();
+    assert!(answer.starts_with("bbrf render ") && !answer.contains("--samples"), "{answer}");
+}

@@ -13,6 +13,7 @@ mod answer;
 mod best;
 mod eval;
 mod fit;
+mod image;
 mod ladder;
 mod measured;
 #[cfg(feature = "write")]
@@ -23,6 +24,7 @@ pub use answer::{Answer, Wish};
 pub use best::mark_best;
 pub use eval::{EvalLadder, NoEvalLadder, eval_ladder};
 pub use fit::{fit_ladder, parameter_distance};
+pub use image::image_ladder;
 pub use ladder::{Ladder, Meaning, Rung, Task};
 pub use measured::{Candidate, measured};
 #[cfg(feature = "write")]

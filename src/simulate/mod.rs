@@ -12,6 +12,7 @@ mod camera;
 mod choice;
 mod colours;
 pub mod convex;
+mod distance;
 pub mod document;
 mod effect;
 mod film;

@@ -36,7 +36,7 @@ pub(crate) struct Arguments {
 #[derive(Debug, Clone, Copy, clap::Args)]
 pub(crate) struct Tolerance {
     /// Take the cheapest plan by which no pixel changes by more than this CIELAB distance of 1976
-    #[arg(long, default_value_t = 0.0, value_name = "DE")]
+    #[arg(long, default_value_t = 0.0, value_name = "DE", allow_negative_numbers = true)]
     max_delta_e: f64,
 }
 

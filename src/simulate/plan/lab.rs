@@ -48,6 +48,11 @@ fn distance([x, y, z]: [f64; 3]) -> f64 {
     (116.0 * y).hypot(500.0 * (x - y)).hypot(200.0 * (y - z))
 }
 
+/// CIELAB distance of two colours, XYZ over that of white.
+pub(in crate::simulate) fn lab_distance(one: [f64; 3], other: [f64; 3]) -> f64 {
+    distance([0, 1, 2].map(|c| f(one[c]) - f(other[c])))
+}
+
 /// Factors from a least to a largest value each.
 #[derive(Debug, Clone)]
 struct Box_ {

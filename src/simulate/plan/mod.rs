@@ -6,6 +6,7 @@ mod lab;
 mod reach;
 
 pub use bound::Bound;
+pub(super) use lab::lab_distance;
 
 use schemars::JsonSchema;
 use serde::Serialize;

@@ -2,6 +2,7 @@
 
 mod eval;
 mod fit;
+mod image;
 mod storage;
 mod text;
 
@@ -23,6 +24,7 @@ Examples:
   bbrf cost fit scan.bbrf
   bbrf cost fit scan.bbrf --reduce none --max-error 0.1
   bbrf cost eval postit.bbrf --light D65 --light FL11 --budget 0.5 -o eval.svg
+  bbrf cost image room.toml --max-error 1
   bbrf cost storage scan.bbrf --max-error 0 --json";
 
 /// Measure what accuracy costs in time, and take a setting
@@ -41,6 +43,7 @@ pub(crate) struct Arguments {
 enum Task {
     Fit(Box<fit::Arguments>),
     Eval(Box<eval::Arguments>),
+    Image(image::Arguments),
     Storage(storage::Arguments),
 }
 
@@ -83,6 +86,7 @@ pub(crate) fn run(arguments: &Arguments) -> CommandResult {
     match &arguments.task {
         Task::Fit(arguments) => fit::run(arguments),
         Task::Eval(arguments) => eval::run(arguments),
+        Task::Image(arguments) => image::run(arguments),
         Task::Storage(arguments) => storage::run(arguments),
     }
 }
