@@ -119,7 +119,7 @@ fn every_pixel_under_a_point_light_is_that_of_the_terms() {
 }
 
 #[test]
-fn threads_and_vector_instructions_change_no_bit() {
+fn threads_change_no_bit_and_vector_instructions_the_last_at_most() {
     let mut random = Random::new(3);
     let pool = |threads| rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
     let (one, two) = (pool(1), pool(2));
@@ -128,11 +128,15 @@ fn threads_and_vector_instructions_change_no_bit() {
         let draw = |renderer: Renderer, pool: &rayon::ThreadPool| {
             let mut film = film();
             pool.install(|| renderer.render(&scene, Component::Total, &mut film)).unwrap();
-            film.numbers().iter().map(|value| value.to_bits()).collect::<Vec<u32>>()
+            film
         };
+        let bits = |film: &Film| film.numbers().iter().map(|value| value.to_bits()).collect::<Vec<u32>>();
         let first = draw(Renderer::default(), &one);
-        assert_eq!(first, draw(Renderer::default(), &two), "two threads");
-        assert_eq!(first, draw(Renderer::default().plain(), &two), "plain");
+        assert_eq!(bits(&first), bits(&draw(Renderer::default(), &two)), "two threads");
+        let plain = draw(Renderer::default().plain(), &two);
+        assert_eq!(bits(&plain), bits(&draw(Renderer::default().plain(), &one)), "two threads, plain");
+        let (units, value, plain) = worst(&first, &plain);
+        assert!(units <= 1, "{value:e}, plain {plain:e}: {scene:?}");
     }
 }
 

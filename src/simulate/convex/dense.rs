@@ -61,7 +61,7 @@ impl<R: Rays> pulp::WithSimd for DenseRow<'_, R> {
         let columns = self.dense.scene.sphere.columns(self.row, width);
         let mut incident = vec![[0.0; AT_ONCE]; self.dense.spectral.excitation.len()];
         for first in columns.clone().step_by(LANES) {
-            let [lit, shine] = self.dense.frame.shares(self.row, first);
+            let [lit, shine] = self.dense.frame.shares::<S>(self.row, first);
             let groups = lit.as_chunks().0.iter().zip(shine.as_chunks().0);
             for (group, (lit, shine)) in groups.enumerate() {
                 let first = first + group * AT_ONCE;

@@ -28,10 +28,8 @@ pub(super) struct Beam {
 pub(super) struct Half {
     /// Q.
     pub(super) q: Vector,
-    /// 1/|L + V|.
+    /// 1/|L + V|, of which L.Q = V.Q is half the inverse.
     pub(super) inverse: f64,
-    /// L.Q = V.Q.
-    pub(super) cos_q: f64,
     /// F.
     pub(super) fresnel: f64,
 }
@@ -74,7 +72,7 @@ fn half(towards: Vector, index_minus_one: f64) -> Half {
     let inverse = 1.0 / length;
     let apart = minus(towards, [0.0, 0.0, 1.0]);
     let (cos_q, sin2_q) = (0.5 * length, 0.25 * dot(apart, apart));
-    Half { q: scaled(sum, inverse), inverse, cos_q, fresnel: reflectance(cos_q, sin2_q, index_minus_one) }
+    Half { q: scaled(sum, inverse), inverse, fresnel: reflectance(cos_q, sin2_q, index_minus_one) }
 }
 
 /// F, which needs nothing of the normal.

@@ -75,11 +75,11 @@ impl Lobe {
 
     /// D at s = sin^2(phi/2) and cos(phi) above 0.
     #[inline(always)]
-    pub(super) fn value(&self, s: f64, cos_phi: f64) -> f64 {
+    pub(super) fn value<S: pulp::Simd>(&self, s: f64, cos_phi: f64) -> f64 {
         let (cos2, sin2) = (cos_phi * cos_phi, 4.0 * s * (1.0 - s));
         match *self {
-            Self::Gaussian { scale, rate } => scale * exponential(rate * s * polynomial(&ARCSINE, s)),
-            Self::Beckmann { scale, rate } => scale * exponential(rate * (sin2 / cos2)) / (cos2 * cos2),
+            Self::Gaussian { scale, rate } => scale * exponential::<S>(rate * s * polynomial::<S, _>(&ARCSINE, s)),
+            Self::Beckmann { scale, rate } => scale * exponential::<S>(rate * (sin2 / cos2)) / (cos2 * cos2),
             Self::TrowbridgeReitz { scale, square } => {
                 let radius2 = sin2 + square * cos2;
                 scale / (radius2 * radius2)
@@ -89,11 +89,11 @@ impl Lobe {
 
     /// D of several pixels: the form is chosen once for all of them.
     #[inline(always)]
-    pub(super) fn values<const N: usize>(&self, s: &[f64; N], cos_phi: &[f64; N]) -> [f64; N] {
+    pub(super) fn values<S: pulp::Simd, const N: usize>(&self, s: &[f64; N], cos_phi: &[f64; N]) -> [f64; N] {
         match *self {
-            Self::Gaussian { scale, rate } => each(s, cos_phi, Self::Gaussian { scale, rate }),
-            Self::Beckmann { scale, rate } => each(s, cos_phi, Self::Beckmann { scale, rate }),
-            Self::TrowbridgeReitz { scale, square } => each(s, cos_phi, Self::TrowbridgeReitz { scale, square }),
+            Self::Gaussian { scale, rate } => each::<S, N>(s, cos_phi, Self::Gaussian { scale, rate }),
+            Self::Beckmann { scale, rate } => each::<S, N>(s, cos_phi, Self::Beckmann { scale, rate }),
+            Self::TrowbridgeReitz { scale, square } => each::<S, N>(s, cos_phi, Self::TrowbridgeReitz { scale, square }),
         }
     }
 
@@ -105,7 +105,7 @@ impl Lobe {
             Self::Beckmann { rate, .. } => rate <= -2.0,
             Self::TrowbridgeReitz { square, .. } => square <= 1.0,
         };
-        let at = |cosine: f64| self.value((1.0 - cosine) / 2.0, cosine);
+        let at = |cosine: f64| self.value::<pulp::Scalar>((1.0 - cosine) / 2.0, cosine);
         if !falls || at(1e-9) >= bound {
             return -1.0;
         }
@@ -120,30 +120,37 @@ impl Lobe {
 
 /// D of several pixels, of a form that the compiler knows.
 #[inline(always)]
-fn each<const N: usize>(s: &[f64; N], cos_phi: &[f64; N], lobe: Lobe) -> [f64; N] {
+fn each<S: pulp::Simd, const N: usize>(s: &[f64; N], cos_phi: &[f64; N], lobe: Lobe) -> [f64; N] {
     let mut values = [0.0; N];
     for lane in 0..N {
-        values[lane] = lobe.value(s[lane], cos_phi[lane]);
+        values[lane] = lobe.value::<S>(s[lane], cos_phi[lane]);
     }
     values
 }
 
+/// a b + c, in one instruction and with one rounding where the processor has it: so vectors differ from plain numbers in the last bit
+/// of double precision.
 #[inline(always)]
-fn polynomial<const N: usize>(coefficients: &[f64; N], x: f64) -> f64 {
+fn fused<S: pulp::Simd>(a: f64, b: f64, c: f64) -> f64 {
+    if S::IS_SCALAR { a * b + c } else { a.mul_add(b, c) }
+}
+
+#[inline(always)]
+fn polynomial<S: pulp::Simd, const N: usize>(coefficients: &[f64; N], x: f64) -> f64 {
     let mut sum = coefficients[N - 1];
     for k in (0..N - 1).rev() {
-        sum = sum * x + coefficients[k];
+        sum = fused::<S>(sum, x, coefficients[k]);
     }
     sum
 }
 
 /// exp of a number that is not above 700: 2^k times a polynomial of what is left.
 #[inline(always)]
-fn exponential(x: f64) -> f64 {
+fn exponential<S: pulp::Simd>(x: f64) -> f64 {
     let x = x.max(SMALLEST_EXPONENT);
-    let shifted = x * std::f64::consts::LOG2_E + ROUNDER;
+    let shifted = fused::<S>(x, std::f64::consts::LOG2_E, ROUNDER);
     let k = shifted - ROUNDER;
-    let rest = (x - k * LN_2_HIGH) - k * LN_2_LOW;
+    let rest = fused::<S>(k, -LN_2_LOW, fused::<S>(k, -LN_2_HIGH, x));
     let power = f64::from_bits((shifted.to_bits() << 52).wrapping_add(1.0_f64.to_bits()));
-    polynomial(&EXPONENTIAL, rest) * power
+    polynomial::<S, _>(&EXPONENTIAL, rest) * power
 }

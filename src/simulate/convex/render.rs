@@ -40,8 +40,8 @@ impl Default for Renderer {
 }
 
 impl Renderer {
-    /// The same without vector instructions beyond those that the program was built for: the same image to the last bit, and
-    /// later. For comparisons.
+    /// The same without vector instructions beyond those that the program was built for: the same image to one unit in the last
+    /// place, and later. For comparisons.
     #[must_use]
     pub fn plain(self) -> Self {
         Self { arch: pulp::Arch::Scalar, ..self }

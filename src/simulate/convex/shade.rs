@@ -77,7 +77,7 @@ impl<R: Rays> pulp::WithSimd for Row<'_, R> {
 
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, _: S) {
-        self.frame.fill(self.row, self.out);
+        self.frame.fill::<S>(self.row, self.out);
     }
 }
 
@@ -100,7 +100,7 @@ impl<R: Rays> Frame<R> {
 
     /// Writes a row, all of it: the film may hold another image.
     #[inline(always)]
-    fn fill(&self, row: usize, out: &mut [f32]) {
+    fn fill<S: pulp::Simd>(&self, row: usize, out: &mut [f32]) {
         let width = out.len() / 3;
         let (red, rest) = out.split_at_mut(width);
         let (green, blue) = rest.split_at_mut(width);
@@ -118,12 +118,12 @@ impl<R: Rays> Frame<R> {
         }
         let [mut red, mut green, mut blue] = planes.map(|plane| plane.chunks_exact_mut(LANES));
         for ((red, green), blue) in (&mut red).zip(&mut green).zip(&mut blue) {
-            self.pixels(up, middle, [red, green, blue]);
+            self.pixels::<S>(up, middle, [red, green, blue]);
             middle += LANES as f64;
         }
         let mut last = [[0.0; LANES]; 3];
         let [r, g, b] = &mut last;
-        self.pixels(up, middle, [r, g, b]);
+        self.pixels::<S>(up, middle, [r, g, b]);
         for (rest, last) in [red, green, blue].into_iter().zip(&last) {
             let rest = rest.into_remainder();
             rest.copy_from_slice(&last[..rest.len()]);
@@ -143,7 +143,7 @@ impl<R: Rays> Frame<R> {
 
     /// `LANES` pixels of a row. Those beside the sphere are black.
     #[inline(always)]
-    fn pixels(&self, up: f64, middle: f64, [red, green, blue]: [&mut [f32]; 3]) {
+    fn pixels<S: pulp::Simd>(&self, up: f64, middle: f64, [red, green, blue]: [&mut [f32]; 3]) {
         let (mut cos_v, mut shining) = ([0.0; LANES], 0);
         for (lane, ((red, green), blue)) in red.iter_mut().zip(&mut *green).zip(&mut *blue).enumerate().take(LANES) {
             let point = self.point(middle + STEPS[lane], up);
@@ -157,7 +157,7 @@ impl<R: Rays> Frame<R> {
         if shining == 0 {
             return;
         }
-        let [lit, shine] = self.lobe(up, middle, &cos_v);
+        let [lit, shine] = self.lobe::<S>(up, middle, &cos_v);
         for (c, plane) in [red, green, blue].into_iter().enumerate() {
             for (lane, value) in plane.iter_mut().enumerate().take(LANES) {
                 *value = (lit[lane] * self.base[c] + shine[lane] * self.shine[c]) as f32;
@@ -167,13 +167,13 @@ impl<R: Rays> Frame<R> {
 
     /// What the diffuse terms and the specular term without its intensity are multiplied by, from a column on.
     #[inline(always)]
-    pub(super) fn shares(&self, row: usize, first: usize) -> [Lanes; 2] {
+    pub(super) fn shares<S: pulp::Simd>(&self, row: usize, first: usize) -> [Lanes; 2] {
         let (up, middle) = (self.sphere.up(row), first as f64 + 0.5);
         let mut cos_v = [0.0; LANES];
         for lane in 0..LANES {
             cos_v[lane] = self.point(middle + STEPS[lane], up).normal[2];
         }
-        self.lobe(up, middle, &cos_v)
+        self.lobe::<S>(up, middle, &cos_v)
     }
 
     /// The surface at the middle of a pixel, by its place on the film.
@@ -202,7 +202,7 @@ impl<R: Rays> Frame<R> {
     /// cos(theta_i) and D F G over the denominator, both times the strength of the light; 0 where no light falls or no sphere is.
     /// In passes without a choice inside, which would keep the compiler from making vectors of them.
     #[inline(always)]
-    fn lobe(&self, up: f64, middle: f64, cos_v: &Lanes) -> [Lanes; 2] {
+    fn lobe<S: pulp::Simd>(&self, up: f64, middle: f64, cos_v: &Lanes) -> [Lanes; 2] {
         let (mut s, mut cos_phi, mut cos_i) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
         let (mut twice_ratio, mut factor, mut lit) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
         for lane in 0..LANES {
@@ -214,11 +214,12 @@ impl<R: Rays> Frame<R> {
             lit[lane] = point.lit();
             cos_i[lane] = if point.is_lit { point.cos_i } else { -1.0 };
             cos_phi[lane] = (cos_i[lane] + cos_v[lane]) * half.inverse;
-            twice_ratio[lane] = 2.0 * cos_phi[lane] / half.cos_q;
+            // cos_q is half of |L + V|.
+            twice_ratio[lane] = 4.0 * cos_phi[lane] * half.inverse;
             factor[lane] = half.fresnel * point.beam.strength;
         }
         let angular = self.angular(&cos_i, cos_v, &twice_ratio);
-        let d = self.lobe.values(&s, &cos_phi);
+        let d = self.lobe.values::<S, LANES>(&s, &cos_phi);
         let mut shine = [0.0; LANES];
         for lane in 0..LANES {
             let value = d[lane] * factor[lane] * angular[lane];
