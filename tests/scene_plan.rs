@@ -251,6 +251,10 @@ fn interreflection_is_bounded_to_any_number_of_bounces() {
             }
             most_e = most_e.max(apart(&full, &less).0);
             if most_e > 0.05 {
+                if std::env::var("BBRF_SHOW").is_ok() {
+                    let kinds: Vec<String> = scene.bodies.iter().map(|b| format!("{:?}", b.shape).chars().take(6).collect()).collect();
+                    println!("case {case} kept {kept}: {:.2} of {:.2}, ratio {:.1}, Y {:.2e} of {:.2e} {kinds:?} {:?}", bound.delta_e, most_e, bound.delta_e / most_e, bound.luminance, most, scene.bounces);
+                }
                 ratios.push(bound.delta_e / most_e);
             }
         }

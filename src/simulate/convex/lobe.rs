@@ -93,7 +93,9 @@ impl Lobe {
         match *self {
             Self::Gaussian { scale, rate } => each::<S, N>(s, cos_phi, Self::Gaussian { scale, rate }),
             Self::Beckmann { scale, rate } => each::<S, N>(s, cos_phi, Self::Beckmann { scale, rate }),
-            Self::TrowbridgeReitz { scale, square } => each::<S, N>(s, cos_phi, Self::TrowbridgeReitz { scale, square }),
+            Self::TrowbridgeReitz { scale, square } => {
+                each::<S, N>(s, cos_phi, Self::TrowbridgeReitz { scale, square })
+            }
         }
     }
 

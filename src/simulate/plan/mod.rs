@@ -1,9 +1,14 @@
 //! What of a scene is simulated, why the rest need not be, and what it may change at most.
 
 mod bound;
-mod indirect;
+mod cone;
+mod exchange;
+mod full;
 mod lab;
+mod parts;
+mod patch;
 mod reach;
+mod rings;
 
 pub use bound::Bound;
 pub(super) use lab::lab_distance;
@@ -11,7 +16,7 @@ pub(super) use lab::lab_distance;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use self::bound::Full;
+use self::full::Full;
 use super::choice::Choice;
 use super::effect::Effect;
 use super::grid::NoGrid;

@@ -1,33 +1,100 @@
 //! How much light may reach a body, and which bodies may stand in each other's light or see each other.
 
-use std::f64::consts::FRAC_PI_2;
-
 use super::super::camera::Projection;
 use super::super::interface::Interface;
 use super::super::scene::{Body, Scene};
 use super::super::shape::Shape;
 use super::super::source::{Place, Source};
-use super::super::vector::{Vector, dot, length, minus, plus, scaled, unit};
+use super::super::vector::{dot, length, minus, scaled};
+use super::rings::{Ring, distance, rings};
 
-/// Directions around an axis.
-#[derive(Debug, Clone, Copy)]
-struct Cone {
-    axis: Vector,
-    half: f64,
+/// The light from all around at an interface is tabulated; its largest value may lie between two of the table, and beside its sum.
+pub(super) const TABLE: f64 = 1.05;
+
+/// How much of each light there may be on each body.
+pub(super) struct Reach {
+    /// \[body\]\[light\]: largest cos(theta_i) times the strength.
+    pub(super) lit: Vec<Vec<f64>>,
+    /// \[body\]\[light\]: largest D F G / den times the strength.
+    pub(super) shining: Vec<Vec<f64>>,
+    /// \[body\]\[light\]: the same in rings about the brightest place.
+    pub(super) rings: Vec<Vec<Vec<Ring>>>,
+    /// \[body\]\[light\]: whether a body may stand in between.
+    pub(super) shaded: Vec<Vec<bool>>,
+    /// \[body\]\[other\]: share of the hemisphere.
+    pub(super) seen: Vec<Vec<f64>>,
+    /// Largest share of light from all around that each body's interface sends on.
+    pub(super) mirrored: Vec<f64>,
+    /// Whether each body's material has an interface that reflects.
+    pub(super) has_interface: Vec<bool>,
 }
 
-/// Least distance of a place from a body; a lower bound of it.
-fn distance(shape: &Shape, place: Vector) -> f64 {
-    match shape {
-        Shape::Sphere(ball) => (length(minus(place, ball.centre)) - ball.radius).abs(),
-        Shape::Plane(plane) => dot(minus(place, plane.point), plane.normal).abs(),
-        Shape::Box(cuboid) => {
-            let from = minus(place, cuboid.centre);
-            length([0, 1, 2].map(|k| (dot(from, cuboid.axes[k]).abs() - cuboid.half[k]).max(0.0)))
+impl Reach {
+    pub(super) fn new(scene: &Scene) -> Self {
+        let bodies = 0..scene.bodies.len();
+        let interfaces: Vec<Option<Interface>> = scene
+            .materials
+            .iter()
+            .map(|one| {
+                one.specular
+                    .filter(|term| term.intensity > 0.0 || one.intensity.iter().any(|(_, c)| *c > 0.0))
+                    .as_ref()
+                    .map(Interface::new)
+            })
+            .collect();
+        let interface = |body: usize| interfaces[scene.bodies[body].material].as_ref();
+        let has_surround = scene.sources.iter().any(Source::is_surround);
+        let tables: Vec<f64> = interfaces
+            .iter()
+            .map(|one| {
+                one.as_ref()
+                    .filter(|_| has_surround)
+                    .map_or(0.0, |one| TABLE * one.surrounded().into_iter().fold(0.0, f64::max))
+            })
+            .collect();
+        let rings_of = |body: usize, source: &Source| match interface(body) {
+            Some(one) if !source.is_surround() => rings(scene, &scene.bodies[body], source, one),
+            _ => Vec::new(),
+        };
+        let lights = |body: usize, of: &dyn Fn(usize, &Source) -> f64| {
+            scene.sources.iter().map(|source| of(body, source)).collect::<Vec<f64>>()
+        };
+        let lit = |body: usize, source: &Source| most_lit(&scene.bodies[body].shape, source);
+        let shining = |body: usize, source: &Source| match interface(body) {
+            Some(_) if source.is_surround() => tables[scene.bodies[body].material],
+            _ => rings_of(body, source).iter().map(|ring| ring.shining).fold(0.0, f64::max),
+        };
+        let shades = |body: usize| {
+            scene
+                .sources
+                .iter()
+                .map(|source| bodies.clone().any(|caster| may_shade(scene, caster, body, source)))
+                .collect()
+        };
+        let seen: Vec<Vec<f64>> =
+            bodies.clone().map(|from| bodies.clone().map(|other| most_seen(scene, from, other)).collect()).collect();
+        Self {
+            lit: bodies.clone().map(|body| lights(body, &lit)).collect(),
+            shining: bodies.clone().map(|body| lights(body, &shining)).collect(),
+            rings: bodies
+                .clone()
+                .map(|body| scene.sources.iter().map(|source| rings_of(body, source)).collect())
+                .collect(),
+            shaded: bodies.clone().map(shades).collect(),
+            mirrored: bodies.clone().map(|body| tables[scene.bodies[body].material]).collect(),
+            has_interface: bodies.clone().map(|body| interface(body).is_some()).collect(),
+            seen,
         }
-        Shape::Mesh(_) => {
-            shape.around().map_or(0.0, |(centre, radius)| (length(minus(place, centre)) - radius).max(0.0))
-        }
+    }
+
+    /// True where light may go from one body to another, or from one part of a body to another.
+    pub(super) fn is_open(&self) -> bool {
+        self.seen.iter().flatten().all(|share| *share == 0.0)
+    }
+
+    /// True where every body that can be seen from another has no interface.
+    pub(super) fn is_matte(&self) -> bool {
+        (0..self.seen.len()).all(|of| !self.has_interface[of] || self.seen.iter().all(|list| list[of] == 0.0))
     }
 }
 
@@ -43,80 +110,6 @@ pub(super) fn most_lit(shape: &Shape, source: &Source) -> f64 {
             Shape::Sphere(_) => 1.0,
         },
     }
-}
-
-/// Least and largest irradiance across the beam.
-fn strengths(shape: &Shape, source: &Source) -> (f64, f64) {
-    let Place::Point(place, reference) = source.place else { return (1.0, 1.0) };
-    let far = shape.around().map_or(f64::INFINITY, |(centre, radius)| length(minus(place, centre)) + radius);
-    ((reference / far).powi(2), (reference / distance(shape, place)).powi(2))
-}
-
-/// Directions from a body to a place.
-fn to_place(shape: &Shape, place: Vector) -> Option<Cone> {
-    let (centre, radius) = shape.around()?;
-    let way = minus(place, centre);
-    let far = length(way);
-    (far > radius).then(|| Cone { axis: scaled(way, 1.0 / far), half: (radius / far).asin() })
-}
-
-/// Places of a body whose normal stands between two angles from the half vector.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Ring {
-    /// Largest D F G / den there, times the strength of the light; infinite where nothing bounds it.
-    pub(super) shining: f64,
-    /// Least cos(theta_i) times the strength, where the light is not hidden.
-    pub(super) least_lit: f64,
-}
-
-/// Edges of the rings, in half widths of a lobe about as wide as it is.
-const EDGES: [f64; 12] = [0.0, 0.25, 0.5, 0.75, 1.0, 1.25, 1.5, 2.0, 2.5, 3.0, 4.0, 6.0];
-
-/// The rings of a body that a light may shine in; one without an end where nothing bounds it.
-pub(super) fn rings(scene: &Scene, body: &Body, source: &Source, interface: &Interface) -> Vec<Ring> {
-    let unknown = vec![Ring { shining: f64::INFINITY, least_lit: 0.0 }];
-    let shape = &body.shape;
-    let light = match source.place {
-        Place::Directional(towards) => Some(Cone { axis: towards, half: 0.0 }),
-        Place::Point(place, _) => to_place(shape, place),
-        Place::Surround => None,
-    };
-    let view = match scene.camera.projection {
-        Projection::Orthographic { .. } => Some(Cone { axis: scaled(scene.camera.axes[2], -1.0), half: 0.0 }),
-        Projection::Perspective { .. } => to_place(shape, scene.camera.place),
-    };
-    let (Some(light), Some(view)) = (light, view) else { return unknown };
-    let sum = plus(light.axis, view.axis);
-    let (long, spread) = (length(sum), light.half + view.half);
-    // The half vector of directions that are off by angles a and b is off by at most asin((a + b) / |L + V|).
-    let Some(half) = unit(sum).filter(|_| spread < long) else { return unknown };
-    let off = (spread / long).min(1.0).asin();
-    let angle = |a: Vector, b: Vector| 2.0 * (0.5 * length(minus(a, b))).min(1.0).asin();
-    let theta_q = (0.5 * (angle(light.axis, view.axis) + spread)).min(FRAC_PI_2);
-    let seen = |normal: Vector| {
-        let faces = |cone: &Cone| dot(normal, cone.axis) > -cone.half.sin() || cone.half > 1.5;
-        (faces(&light) && faces(&view)).then(|| (angle(normal, half) - off - 1e-9).max(0.0))
-    };
-    let both =
-        |normal: Vector| [seen(normal), seen(scaled(normal, -1.0))].into_iter().flatten().fold(f64::INFINITY, f64::min);
-    let nearest = match shape {
-        Shape::Sphere(_) => 0.0,
-        Shape::Plane(plane) => both(plane.normal),
-        Shape::Box(cuboid) => cuboid.axes.iter().map(|axis| both(*axis)).fold(f64::INFINITY, f64::min),
-        Shape::Mesh(mesh) => mesh.normals().map(both).fold(f64::INFINITY, f64::min),
-    };
-    let (least, most) = strengths(shape, source);
-    let mut edges: Vec<f64> =
-        EDGES.iter().map(|edge| edge * interface.half_width()).filter(|edge| *edge < FRAC_PI_2).collect();
-    edges.push(FRAC_PI_2);
-    let ring = |(from, to): (f64, f64)| {
-        let value = interface.most(from.max(nearest), to, theta_q.cos().max(0.0));
-        Ring {
-            shining: if value == 0.0 { 0.0 } else { value * most },
-            least_lit: (theta_q + to).min(FRAC_PI_2).cos().max(0.0) * least,
-        }
-    };
-    edges.windows(2).map(|pair| (pair[0], pair[1])).filter(|(_, to)| *to >= nearest).map(ring).collect()
 }
 
 /// True where all of a body is looked at from outside.

@@ -3,6 +3,8 @@
 //! The tree is our own because the maintained ones count in single precision or ask for another version of the linear algebra; its boxes
 //! are split at the median of the longest side.
 
+use std::collections::HashMap;
+
 use super::{Meeting, Ray, Start};
 use crate::simulate::vector::{Vector, along, cross, dot, length, minus, plus, scaled, unit};
 
@@ -18,6 +20,20 @@ pub struct Mesh {
     nodes: Vec<Node>,
     around: (Vector, f64),
     is_convex: bool,
+    /// Every side of a triangle is that of another, too, and of no third: a surface without an edge.
+    is_closed: bool,
+}
+
+/// Triangles that are near each other.
+#[derive(Debug, Clone, PartialEq)]
+pub(in crate::simulate) struct Piece {
+    /// A ball that holds them.
+    pub(in crate::simulate) centre: Vector,
+    pub(in crate::simulate) radius: f64,
+    /// Their normals, and one about the middle of them.
+    pub(in crate::simulate) normals: Vec<Vector>,
+    pub(in crate::simulate) normal: Vector,
+    pub(in crate::simulate) area: f64,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -68,6 +84,7 @@ impl Mesh {
             return Err(NoMesh::Place(wrong));
         }
         let mut all = Vec::with_capacity(triangles.len());
+        let mut named = Vec::with_capacity(triangles.len());
         for (triangle, at) in triangles.iter().enumerate() {
             if let Some(corner) = at.iter().find(|corner| **corner >= corners.len()) {
                 return Err(NoMesh::Corner { triangle, corner: *corner, corners: corners.len() });
@@ -76,6 +93,7 @@ impl Mesh {
             let sides = [minus(b, a), minus(c, a)];
             if let Some(normal) = unit(cross(sides[0], sides[1])) {
                 all.push(Triangle { corner: a, sides, normal });
+                named.push([a, b, c]);
             }
         }
         if all.is_empty() {
@@ -85,19 +103,46 @@ impl Mesh {
         let centre = scaled(plus(low, high), 0.5);
         let used = all.iter().flat_map(Triangle::corners);
         let radius = used.map(|at| length(minus(at, centre))).fold(0.0, f64::max);
-        let is_convex = all.len() <= PROVEN && is_convex(&all, radius);
+        let is_closed = all.len() <= PROVEN && is_closed(&named);
+        // An open bowl sees itself from within; what is flat does not.
+        let is_convex =
+            all.len() <= PROVEN && is_below(&all, radius, 1.0) && (is_closed || is_below(&all, radius, -1.0));
         let mut nodes = Vec::new();
         let count = all.len();
         split(&mut all, 0, count, &mut nodes);
-        Ok(Self { triangles: all, nodes, around: (centre, radius), is_convex })
+        Ok(Self { triangles: all, nodes, around: (centre, radius), is_convex, is_closed })
     }
 
     pub(super) fn around(&self) -> (Vector, f64) {
         self.around
     }
 
-    pub(super) fn is_convex(&self) -> bool {
+    pub(in crate::simulate) fn is_convex(&self) -> bool {
         self.is_convex
+    }
+
+    /// True where it has no edge: from outside nothing is seen of its inner side.
+    pub(in crate::simulate) fn is_closed(&self) -> bool {
+        self.is_closed
+    }
+
+    /// All of it in so many pieces at most.
+    pub(in crate::simulate) fn pieces(&self, most: usize) -> impl Iterator<Item = Piece> {
+        // The tree has put together what is near.
+        self.triangles.chunks(self.triangles.len().div_ceil(most.max(1))).map(|triangles| {
+            let (low, high) = ends(triangles);
+            let centre = scaled(plus(low, high), 0.5);
+            let far = triangles.iter().flat_map(Triangle::corners).map(|at| length(minus(at, centre)));
+            let twice = |one: &Triangle| length(cross(one.sides[0], one.sides[1]));
+            let sum = triangles.iter().fold([0.0; 3], |sum, one| along(sum, one.normal, twice(one)));
+            Piece {
+                centre,
+                radius: far.fold(0.0, f64::max),
+                normals: triangles.iter().map(|one| one.normal).collect(),
+                normal: unit(sum).unwrap_or(triangles[0].normal),
+                area: triangles.iter().map(twice).sum::<f64>() / 2.0,
+            }
+        })
     }
 
     /// Normals of the triangles.
@@ -210,13 +255,22 @@ fn split(all: &mut [Triangle], first: usize, last: usize, nodes: &mut Vec<Node>)
     nodes[at].second = second;
 }
 
-/// True where no corner lies above any triangle: normals point outwards, or all inwards.
-fn is_convex(triangles: &[Triangle], size: f64) -> bool {
+/// True where no corner lies above any triangle, on the side of its normal or on the other: normals point outwards.
+fn is_below(triangles: &[Triangle], size: f64, sign: f64) -> bool {
     let corners: Vec<Vector> = triangles.iter().flat_map(Triangle::corners).collect();
-    let below = |sign: f64| {
-        triangles.iter().all(|triangle| {
-            corners.iter().all(|at| sign * dot(triangle.normal, minus(*at, triangle.corner)) <= 1e-12 * size)
-        })
-    };
-    below(1.0)
+    triangles.iter().all(|triangle| {
+        corners.iter().all(|at| sign * dot(triangle.normal, minus(*at, triangle.corner)) <= 1e-12 * size)
+    })
+}
+
+fn is_closed(triangles: &[[Vector; 3]]) -> bool {
+    let mut sides: HashMap<[[u64; 3]; 2], usize> = HashMap::new();
+    for corners in triangles {
+        // 0 and -0 are one place.
+        let [a, b, c] = corners.map(|at| at.map(|x| (x + 0.0).to_bits()));
+        for (from, to) in [(a, b), (b, c), (c, a)] {
+            *sides.entry(if from < to { [from, to] } else { [to, from] }).or_default() += 1;
+        }
+    }
+    sides.values().all(|count| *count == 2)
 }

@@ -1,0 +1,245 @@
+//! A bound on the light that comes by way of other bodies.
+//!
+//! Each patch sees another in a share of its hemisphere that is bounded by the cones of their normals, the distance and the area, and
+//! all together in the whole of it at most. So the largest radiances of one order bound the irradiances of the next, wavelength by
+//! wavelength. The bound of an order is monotone and homogeneous in that of the one before: once all of it falls by a factor r, what
+//! follows is at most r / (1 - r) of it.
+
+use std::f64::consts::FRAC_1_PI;
+
+use super::super::material::OnGrid;
+use super::super::scene::{Bounces, Scene};
+use super::super::vector::{dot, length, minus, scaled};
+use super::cone::Cone;
+use super::patch::{Extent, Patch, cut};
+
+/// Orders that are kept before the rest is bounded: at most, and numbers of all of them.
+const ORDERS: usize = 64;
+const MOST_KEPT: usize = 6_000_000;
+/// What falls by less than this in every order is not bounded.
+const FALLS: f64 = 0.999;
+/// What roundings may take from a share.
+const ROUNDING: f64 = 1.0 + 1e-9;
+
+/// Patches of a scene as light goes between them.
+pub(super) struct Exchange {
+    pub(super) patches: Vec<Patch>,
+    /// Whether the camera may see each.
+    pub(super) is_seen: Vec<bool>,
+    /// Of each patch those that it sees, and the share of its hemisphere that each may take up.
+    shares: Vec<Vec<(usize, f64)>>,
+    /// \[patch\]\[light\]: largest irradiance over that of its spectrum.
+    lit: Vec<Vec<f64>>,
+}
+
+/// Largest irradiances of the patches by light that has gone from body to body, once, twice and so on.
+pub(super) struct Orders {
+    each: Vec<Vec<Vec<f64>>>,
+    /// By what the last has fallen at least.
+    ratio: f64,
+}
+
+/// pi times the radiance of a material under an irradiance; noise below 0 counts in full.
+pub(super) fn radiated(material: &OnGrid, incident: &[f64]) -> Vec<f64> {
+    let mut out: Vec<f64> = material.elastic.iter().zip(incident).map(|(rho, e)| rho.abs() * e).collect();
+    if let Some(matrix) = &material.luminescence {
+        for (out, row) in out.iter_mut().zip(matrix.outer_iter()) {
+            *out += row.iter().zip(incident).map(|(value, e)| value.abs() * e).sum::<f64>();
+        }
+    }
+    out
+}
+
+/// The largest share of the hemisphere, weighed by cosines, of any place of one patch that another takes up.
+fn share(from: &Patch, of: &Patch) -> f64 {
+    if from.body == of.body && from.is_convex && of.is_convex {
+        return 0.0;
+    }
+    match (from.extent, of.extent) {
+        (Extent::Within(near), Extent::Within(radius)) => {
+            let way = minus(of.centre, from.centre);
+            // Of what lies below a plane nothing is seen from it.
+            let is_below = |one: &Patch, other: &Patch, way: [f64; 3]| {
+                one.normals.half == 0.0 && dot(way, one.normals.axis) + other.reach(one.normals.axis) <= 0.0
+            };
+            if is_below(from, of, way) || is_below(of, from, scaled(way, -1.0)) {
+                return 0.0;
+            }
+            let towards = Cone::between(from.centre, of.centre, near + radius);
+            let cosines = [from.normals.most_cosine(&towards), of.normals.most_cosine(&towards.reversed())];
+            if cosines.contains(&0.0) {
+                return 0.0;
+            }
+            let nearest = length(way) - near;
+            if nearest <= radius {
+                return 1.0;
+            }
+            let by_area = cosines[0] * cosines[1] * of.area * FRAC_1_PI / (nearest - radius).powi(2);
+            of_ball(radius / nearest, cosines[0]).min(by_area * ROUNDING)
+        }
+        (Extent::Within(_), Extent::Beyond(hole)) => {
+            let (height, aside) = of.from_plane(from.centre);
+            let Extent::Within(radius) = from.extent else { return 1.0 };
+            let (height, far) = (height + from.reach(of.normals.axis), hole - aside - radius);
+            if height <= 0.0 {
+                return 0.0;
+            }
+            if far <= 0.0 {
+                return 1.0;
+            }
+            let down = from.normals.most_cosine(&Cone::of(scaled(of.normals.axis, -1.0)));
+            let along = if from.normals.half > 0.0 {
+                1.0
+            } else {
+                (1.0 - dot(from.normals.axis, of.normals.axis).powi(2)).max(0.0).sqrt()
+            };
+            // What looks straight down sees of the plane beyond a circle h^2 / (h^2 + L^2), what looks along it the other part.
+            let square = height * height + far * far;
+            let beside = FRAC_1_PI * (far * height / square + (height / far).atan());
+            (ROUNDING * (down * height * height / square + along * beside)).min(1.0)
+        }
+        (Extent::Beyond(hole), Extent::Within(radius)) => {
+            let (height, aside) = from.from_plane(of.centre);
+            let (top, far) = (height + of.reach(from.normals.axis), hole - aside);
+            if top <= 0.0 {
+                return 0.0;
+            }
+            if far <= radius {
+                return 1.0;
+            }
+            of_ball(radius / far, (top / (far - radius)).min(1.0))
+        }
+        (Extent::Beyond(_), Extent::Beyond(_)) => 1.0,
+    }
+}
+
+/// The share of a ball of this radius over its distance, no part of which stands at a greater cosine.
+fn of_ball(sine: f64, cosine: f64) -> f64 {
+    let square = sine * sine;
+    // 2 (1 - cos), without the difference.
+    let solid = 2.0 * square / (1.0 + (1.0 - square).max(0.0).sqrt());
+    (ROUNDING * square.min(cosine * solid)).min(1.0)
+}
+
+impl Exchange {
+    pub(super) fn new(scene: &Scene) -> Self {
+        let patches = cut(scene);
+        let sees = |from: &Patch| {
+            let all = patches.iter().enumerate().map(|(number, of)| (number, share(from, of)));
+            all.filter(|(_, share)| *share > 0.0).collect()
+        };
+        Self {
+            is_seen: patches.iter().map(|patch| patch.may_be_seen(scene)).collect(),
+            shares: patches.iter().map(sees).collect(),
+            lit: patches.iter().map(|patch| scene.sources.iter().map(|source| patch.lit(source)).collect()).collect(),
+            patches,
+        }
+    }
+
+    /// False where a light stands on a body.
+    pub(super) fn is_finite(&self) -> bool {
+        self.lit.iter().flatten().all(|value| value.is_finite())
+    }
+
+    /// The largest share of each light that a patch gets from bodies of one material.
+    pub(super) fn first(&self, patch: usize, light: usize, is_of: impl Fn(usize) -> bool) -> f64 {
+        let seen = self.shares[patch].iter().filter(|(of, _)| is_of(self.patches[*of].body));
+        let mut seen: Vec<(f64, f64)> = seen.map(|(of, share)| (self.lit[*of][light], *share)).collect();
+        seen.sort_by(|a, b| b.0.total_cmp(&a.0));
+        // The brightest first, until the hemisphere is full.
+        let mut left = 1.0_f64;
+        seen.into_iter().fold(0.0, |sum, (value, share)| {
+            let taken = share.min(left);
+            left -= taken;
+            sum + taken * value
+        })
+    }
+
+    /// The orders of a scene; `None` where they do not fall.
+    pub(super) fn orders(&self, materials: &[&OnGrid], lights: &[Vec<f64>]) -> Option<Orders> {
+        let count = lights.first().map_or(0, Vec::len);
+        let direct = |lit: &Vec<f64>| -> Vec<f64> {
+            (0..count).map(|j| lit.iter().zip(lights).map(|(lit, light)| lit * light[j].abs()).sum()).collect()
+        };
+        let mut last: Vec<Vec<f64>> = self.lit.iter().map(direct).collect();
+        let mut all = Orders { each: Vec::new(), ratio: 0.0 };
+        let most = (MOST_KEPT / (1 + self.patches.len() * count)).clamp(4, ORDERS);
+        while all.each.len() < most {
+            let next = self.next(materials, &last);
+            let falls = next.iter().flatten().zip(last.iter().flatten()).map(|(new, old)| match (*new, *old) {
+                (0.0, _) => 0.0,
+                (_, 0.0) => f64::INFINITY,
+                (new, old) => new / old,
+            });
+            all.ratio = falls.fold(0.0, f64::max);
+            last.clone_from(&next);
+            all.each.push(next);
+            if all.ratio == 0.0 {
+                return Some(all);
+            }
+        }
+        (all.ratio < FALLS).then_some(all)
+    }
+
+    fn next(&self, materials: &[&OnGrid], incident: &[Vec<f64>]) -> Vec<Vec<f64>> {
+        let sent: Vec<Vec<f64>> =
+            self.patches.iter().zip(incident).map(|(patch, e)| radiated(materials[patch.body], e)).collect();
+        let rank: Vec<f64> = sent.iter().map(|list| list.iter().sum()).collect();
+        let count = incident.first().map_or(0, Vec::len);
+        let one = |seen: &Vec<(usize, f64)>| {
+            // The largest sum of shares times radiances, with shares that fill one hemisphere, is at most t plus the sum of what is
+            // above t, for any t of each wavelength: that of the patch with which the brightest have filled it is nearly the best.
+            let mut sum = vec![0.0; count];
+            if seen.iter().map(|(_, share)| share).sum::<f64>() > 1.0 {
+                let mut order = seen.clone();
+                order.sort_by(|a, b| rank[b.0].total_cmp(&rank[a.0]));
+                let mut full = 0.0;
+                let last = order.into_iter().find(|(_, share)| {
+                    full += share;
+                    full >= 1.0
+                });
+                if let Some((last, _)) = last {
+                    sum.clone_from(&sent[last]);
+                }
+            }
+            let level = sum.clone();
+            for (of, share) in seen {
+                for ((sum, value), level) in sum.iter_mut().zip(&sent[*of]).zip(&level) {
+                    *sum += share * (value - level).max(0.0);
+                }
+            }
+            sum
+        };
+        self.shares.iter().map(one).collect()
+    }
+}
+
+impl Orders {
+    /// The sum of all that has gone from body to body more than `kept` times, and not more often than the scene asks for.
+    pub(super) fn beyond(&self, kept: u32, bounces: Bounces) -> Vec<Vec<f64>> {
+        let (kept, stored) = (kept as usize, self.each.len());
+        let most = match bounces {
+            Bounces::All => usize::MAX,
+            Bounces::Most(most) => most as usize,
+        };
+        let zero = || {
+            self.each
+                .first()
+                .map_or(Vec::new(), |first| first.iter().map(|list| vec![0.0; list.len()]).collect::<Vec<_>>())
+        };
+        let mut sum = zero();
+        let mut add = |order: &[Vec<f64>], factor: f64| {
+            for (sum, order) in sum.iter_mut().flatten().zip(order.iter().flatten()) {
+                *sum += factor * order;
+            }
+        };
+        for order in self.each.iter().take(most.min(stored)).skip(kept) {
+            add(order, 1.0);
+        }
+        if let Some(last) = self.each.last().filter(|_| most > stored.max(kept)) {
+            let further = kept.saturating_sub(stored) as f64;
+            add(last, self.ratio.powf(further + 1.0) / (1.0 - self.ratio));
+        }
+        sum
+    }
+}

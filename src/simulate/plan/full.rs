@@ -1,0 +1,183 @@
+//! The full picture, against which plans are held.
+
+use std::cell::OnceCell;
+
+use super::super::choice::Choice;
+use super::super::effect::Effect;
+use super::super::grid::NoGrid;
+use super::super::picture::Prepared;
+use super::super::scene::{Body, Bounces, Scene};
+use super::super::source::Source;
+use super::bound::Bound;
+use super::exchange::{Exchange, Orders};
+use super::reach::Reach;
+
+/// The full picture, against which plans are held.
+pub(super) struct Full<'a> {
+    pub(super) scene: &'a Scene,
+    pub(super) choice: Choice,
+    pub(super) reach: Reach,
+    pub(super) prepared: Prepared,
+    /// The brightest of the perfect diffuser.
+    pub(super) brightest: f64,
+    /// Made where light may go round.
+    between: OnceCell<Between>,
+}
+
+/// Light between bodies.
+pub(super) struct Between {
+    pub(super) exchange: Exchange,
+    /// `None` where nothing bounds them.
+    orders: Option<Orders>,
+}
+
+/// Largest irradiances of bodies by light from others.
+pub(super) struct Indirect {
+    /// Of each body where the camera may see it.
+    pub(super) seen: Vec<Vec<f64>>,
+    /// Of each body anywhere.
+    pub(super) anywhere: Vec<Vec<f64>>,
+    /// Whether light by one other body comes to it.
+    pub(super) has_first: bool,
+}
+
+impl<'a> Full<'a> {
+    pub(super) fn new(scene: &'a Scene, choice: Choice) -> Result<Self, NoGrid> {
+        let prepared = Prepared::new(scene, choice.step_nm)?;
+        let lights = prepared.lights(scene);
+        let sum = |j: usize| lights.iter().map(|light| light[j]).sum::<f64>();
+        let brightest = (0..prepared.grid.nm().len()).map(sum).fold(0.0, f64::max);
+        Ok(Self { reach: Reach::new(scene), scene, choice, prepared, brightest, between: OnceCell::new() })
+    }
+
+    /// Largest irradiance of each body by the lights themselves, at every wavelength.
+    pub(super) fn lit(&self) -> Vec<Vec<f64>> {
+        let lights = self.prepared.lights(self.scene);
+        let count = self.prepared.grid.nm().len();
+        let one = |body: usize| {
+            (0..count)
+                .map(|j| {
+                    let part = |light: usize| match self.reach.lit[body][light] * lights[light][j].abs() {
+                        // A light on the very surface has no power at this wavelength.
+                        value if value.is_nan() => 0.0,
+                        value => value,
+                    };
+                    (0..lights.len()).map(part).sum()
+                })
+                .collect()
+        };
+        (0..self.scene.bodies.len()).map(one).collect()
+    }
+
+    /// Light between the bodies of this scene.
+    pub(super) fn between(&self) -> &Between {
+        self.between.get_or_init(|| {
+            let exchange = Exchange::new(self.scene);
+            let of = |body: &Body| &self.prepared.materials[body.material];
+            let materials: Vec<_> = self.scene.bodies.iter().map(of).collect();
+            let is_bounded = self.reach.is_matte() && exchange.is_finite();
+            let orders = if is_bounded { exchange.orders(&materials, &self.prepared.lights(self.scene)) } else { None };
+            Between { exchange, orders }
+        })
+    }
+
+    /// All light that may fall on each body; `None` where nothing bounds it.
+    pub(super) fn incident(&self) -> Option<Vec<Vec<f64>>> {
+        let mut all = self.lit();
+        if all.iter().flatten().any(|value| !value.is_finite()) {
+            return None;
+        }
+        if !self.reach.is_open() && self.choice.bounces != Bounces::Most(0) {
+            let more = self.indirect(0)?.anywhere;
+            for (all, more) in all.iter_mut().flatten().zip(more.into_iter().flatten()) {
+                *all += more;
+            }
+        }
+        Some(all)
+    }
+
+    /// Light that goes from body to body more often than `kept`.
+    fn indirect(&self, kept: u32) -> Option<Indirect> {
+        let Between { exchange, orders } = self.between();
+        let by_patch = orders.as_ref()?.beyond(kept, self.choice.bounces);
+        let most = |is_of: &dyn Fn(usize) -> bool| {
+            let mut most: Vec<Vec<f64>> = self.lit().into_iter().map(|list| vec![0.0; list.len()]).collect();
+            for (number, (patch, incident)) in exchange.patches.iter().zip(&by_patch).enumerate() {
+                if is_of(number) {
+                    most[patch.body].iter_mut().zip(incident).for_each(|(most, e)| *most = most.max(*e));
+                }
+            }
+            most
+        };
+        Some(Indirect { seen: most(&|patch| exchange.is_seen[patch]), anywhere: most(&|_| true), has_first: false })
+    }
+
+    /// True where an effect adds exactly nothing anywhere.
+    pub(super) fn is_nothing(&self, effect: Effect) -> bool {
+        let bodies = || self.scene.bodies.iter().enumerate();
+        let on = |body: &Body| &self.prepared.materials[body.material];
+        match effect {
+            Effect::Surround => !self.scene.sources.iter().any(Source::is_surround),
+            Effect::Shadow => !self.reach.shaded.iter().flatten().any(|may| *may),
+            Effect::Interreflection => self.reach.is_open() || self.choice.bounces == Bounces::Most(0),
+            Effect::Specular => {
+                !self.reach.has_interface.iter().any(|has| *has)
+                    || (self.reach.is_open() && self.reach.shining.iter().flatten().all(|most| *most == 0.0))
+            }
+            Effect::Luminescence if bodies().all(|(_, body)| on(body).luminescence.is_none()) => true,
+            Effect::Diffuse if bodies().all(|(_, body)| on(body).elastic.iter().all(|rho| *rho == 0.0)) => true,
+            Effect::Luminescence | Effect::Diffuse => self.incident().is_some_and(|incident| {
+                bodies().all(|(number, body)| {
+                    let material = on(body);
+                    match (effect, &material.luminescence) {
+                        (Effect::Luminescence, None) => true,
+                        (Effect::Luminescence, Some(matrix)) => {
+                            let is_dark = |row: ndarray::ArrayView1<'_, f64>| {
+                                row.iter().zip(&incident[number]).all(|(a, b)| a * b == 0.0)
+                            };
+                            matrix.outer_iter().all(is_dark)
+                        }
+                        _ => material.elastic.iter().zip(&incident[number]).all(|(a, b)| a * b == 0.0),
+                    }
+                })
+            }),
+        }
+    }
+
+    /// What no pixel changes by more than when `plan` is drawn and not this.
+    pub(super) fn bound(&self, plan: &Choice) -> Bound {
+        let is_same = Effect::ALL.iter().all(|effect| plan.has(*effect) || self.is_nothing(*effect));
+        if is_same && plan.bounces == self.choice.bounces && plan.step_nm == self.choice.step_nm {
+            return Bound::ZERO;
+        }
+        let Ok(prepared) = Prepared::new(self.scene, plan.step_nm) else { return Bound::UNKNOWN };
+        let kept = if plan.has(Effect::Interreflection) {
+            match plan.bounces {
+                Bounces::All => None,
+                Bounces::Most(most) => Some(most),
+            }
+        } else {
+            Some(0)
+        };
+        let goes_round = !self.is_nothing(Effect::Interreflection);
+        let indirect = match kept {
+            _ if !goes_round => Some(None),
+            // The first order is known by its colours, the rest by its size.
+            Some(0) => self.indirect(1).map(|rest| Some(Indirect { has_first: true, ..rest })),
+            Some(kept) if Bounces::Most(kept) != self.choice.bounces => self.indirect(kept).map(Some),
+            _ => Some(None),
+        };
+        let drops = |effect: Effect| !plan.has(effect) && !self.is_nothing(effect);
+        let still_round = goes_round && kept != Some(0);
+        // What is left out of a body is left out of the light that it sends to others, too: that is not bounded here.
+        let is_chained = still_round
+            && (plan.step_nm != self.choice.step_nm
+                || drops(Effect::Luminescence)
+                || drops(Effect::Diffuse)
+                || drops(Effect::Specular)
+                || drops(Effect::Surround));
+        let Some(indirect) = indirect.filter(|_| !is_chained) else { return Bound::UNKNOWN };
+        let bodies = 0..self.scene.bodies.len();
+        bodies.map(|body| self.of_body(body, plan, &prepared, indirect.as_ref())).fold(Bound::ZERO, Bound::larger)
+    }
+}

@@ -1,0 +1,296 @@
+//! Bodies in patches: what is said of a patch holds at each of its places, and says more than what holds on all of a body.
+
+use std::f64::consts::{FRAC_PI_4, TAU};
+
+use super::super::camera::Projection;
+use super::super::scene::{Body, Scene};
+use super::super::shape::{Ball, Cuboid, Mesh, Plane, Rectangle, Shape};
+use super::super::source::{Place, Source};
+use super::super::vector::{Vector, across, along, cross, dot, length, minus, plus, scaled, unit};
+use super::cone::{Cone, angle};
+use super::reach::is_seen_from_outside;
+
+/// How far a patch goes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Extent {
+    /// It is held by a ball of this radius about its centre.
+    Within(f64),
+    /// All of a plane that is at least so far from its centre.
+    Beyond(f64),
+}
+
+/// One side of a part of a body.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Patch {
+    pub(super) body: usize,
+    pub(super) centre: Vector,
+    pub(super) extent: Extent,
+    /// Normals, on the side that it is a patch of.
+    pub(super) normals: Cone,
+    pub(super) area: f64,
+    /// It sees no other patch of its body that is so, too.
+    pub(super) is_convex: bool,
+}
+
+/// How finely bodies are cut: as many patches as a scene of so many bodies leaves time for.
+fn fineness(bodies: usize) -> usize {
+    match bodies {
+        0..=4 => 3,
+        5..=12 => 2,
+        13..=60 => 1,
+        _ => 0,
+    }
+}
+
+/// Edges of the parts of a plane without end, in radii of what else there is.
+const EDGES: [&[f64]; 4] = [&[2.0], &[1.0, 4.0], &[0.6, 2.0, 8.0], &[0.3, 0.8, 1.6, 4.0, 12.0]];
+
+/// Cuts all bodies.
+pub(super) fn cut(scene: &Scene) -> Vec<Patch> {
+    let fine = fineness(scene.bodies.len());
+    let middle = middle(scene);
+    let mut all = Vec::new();
+    for (number, body) in scene.bodies.iter().enumerate() {
+        let mut cutter = Cutter { body: number, all: &mut all };
+        if fine == 0 && !matches!(body.shape, Shape::Plane(_)) {
+            cutter.whole(body);
+            continue;
+        }
+        // Where the camera is in a body, its inner side is what there is.
+        let is_within = !is_seen_from_outside(scene, body);
+        match &body.shape {
+            Shape::Sphere(ball) => cutter.ball(ball, fine, is_within),
+            Shape::Box(cuboid) => cutter.cuboid(cuboid, fine, is_within),
+            Shape::Plane(plane) => match (plane.rectangle, middle) {
+                (Some(ends), _) => cutter.rectangle(plane, &ends, 2 * fine.max(1)),
+                (None, Some(middle)) => cutter.plane(plane, middle, EDGES[fine]),
+                (None, None) => cutter.beyond(plane, plane.point, 0.0),
+            },
+            Shape::Mesh(mesh) => cutter.mesh(mesh, 12 * fine, is_within),
+        }
+    }
+    all
+}
+
+/// A ball about all bodies that end.
+fn middle(scene: &Scene) -> Option<(Vector, f64)> {
+    let balls: Vec<(Vector, f64)> = scene.bodies.iter().filter_map(|body| body.shape.around()).collect();
+    let first = balls.first()?;
+    let ends = balls.iter().fold((first.0, first.0), |(low, high), (centre, radius)| {
+        (
+            [0, 1, 2].map(|k| f64::min(low[k], centre[k] - radius)),
+            [0, 1, 2].map(|k| f64::max(high[k], centre[k] + radius)),
+        )
+    });
+    let centre = scaled(plus(ends.0, ends.1), 0.5);
+    let radius = balls.iter().map(|(at, radius)| length(minus(*at, centre)) + radius).fold(0.0, f64::max);
+    Some((centre, radius))
+}
+
+struct Cutter<'a> {
+    body: usize,
+    all: &'a mut Vec<Patch>,
+}
+
+impl Cutter<'_> {
+    fn add(&mut self, centre: Vector, extent: Extent, normals: Cone, area: f64, is_convex: bool) {
+        self.all.push(Patch { body: self.body, centre, extent, normals, area, is_convex });
+    }
+
+    /// In one piece.
+    fn whole(&mut self, body: &Body) {
+        let (centre, radius) = body.shape.around().unwrap_or(([0.0; 3], f64::INFINITY));
+        self.add(centre, Extent::Within(radius), Cone::ALL, f64::INFINITY, false);
+    }
+
+    /// A sphere by the six sides of a cube about it, each in fields of equal angles.
+    fn ball(&mut self, ball: &Ball, fine: usize, is_within: bool) {
+        for (axis, [a, b]) in sides() {
+            let at = |i: usize, j: usize| {
+                let tangent = |k: usize| (FRAC_PI_4 * (2.0 * k as f64 / fine as f64 - 1.0)).tan();
+                unit(along(along(axis, a, tangent(i)), b, tangent(j))).unwrap_or(axis)
+            };
+            for (i, j) in (0..fine).flat_map(|i| (0..fine).map(move |j| (i, j))) {
+                let corners = [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
+                let sum = corners.iter().fold([0.0; 3], |sum, corner| plus(sum, *corner));
+                let towards = unit(sum).unwrap_or(axis);
+                // A cap that holds the corners holds all between them.
+                let half = corners.iter().map(|corner| angle(towards, *corner)).fold(0.0, f64::max);
+                let solid = triangle(corners[0], corners[1], corners[2]) + triangle(corners[0], corners[2], corners[3]);
+                let centre = along(ball.centre, towards, ball.radius * half.cos());
+                let normals = Cone { axis: towards, half };
+                let normals = if is_within { normals.reversed() } else { normals };
+                let extent = Extent::Within(ball.radius * half.sin());
+                self.add(centre, extent, normals, solid * ball.radius * ball.radius, !is_within);
+            }
+        }
+    }
+
+    fn cuboid(&mut self, cuboid: &Cuboid, fine: usize, is_within: bool) {
+        for k in 0..3 {
+            let (a, b) = ((k + 1) % 3, (k + 2) % 3);
+            let ends = Rectangle { axes: [cuboid.axes[a], cuboid.axes[b]], half: [cuboid.half[a], cuboid.half[b]] };
+            for sign in [1.0, -1.0] {
+                let outward = scaled(cuboid.axes[k], sign);
+                let point = along(cuboid.centre, outward, cuboid.half[k]);
+                let normal = if is_within { scaled(outward, -1.0) } else { outward };
+                self.fields(point, normal, &ends, fine, !is_within);
+            }
+        }
+    }
+
+    fn rectangle(&mut self, plane: &Plane, ends: &Rectangle, fine: usize) {
+        for normal in [plane.normal, scaled(plane.normal, -1.0)] {
+            self.fields(plane.point, normal, ends, fine, true);
+        }
+    }
+
+    fn fields(&mut self, point: Vector, normal: Vector, ends: &Rectangle, fine: usize, is_convex: bool) {
+        let half = ends.half.map(|half| half / fine as f64);
+        for (i, j) in (0..fine).flat_map(|i| (0..fine).map(move |j| (i, j))) {
+            let middle = |axis: usize, k: usize| half[axis] * (2 * k + 1) as f64 - ends.half[axis];
+            let centre = along(along(point, ends.axes[0], middle(0, i)), ends.axes[1], middle(1, j));
+            let extent = Extent::Within(half[0].hypot(half[1]));
+            self.add(centre, extent, Cone::of(normal), 4.0 * half[0] * half[1], is_convex);
+        }
+    }
+
+    /// A plane without end: finely where the rest of the scene is near, and what is far in one piece.
+    fn plane(&mut self, plane: &Plane, (middle, radius): (Vector, f64), edges: &[f64]) {
+        let foot = along(middle, plane.normal, dot(minus(plane.point, middle), plane.normal));
+        let axes = across(plane.normal);
+        let mut places: Vec<f64> = edges.iter().rev().map(|edge| -edge * radius).collect();
+        places.push(0.0);
+        places.extend(edges.iter().map(|edge| edge * radius));
+        let fields: Vec<(f64, f64)> =
+            places.windows(2).map(|pair| ((pair[0] + pair[1]) / 2.0, (pair[1] - pair[0]) / 2.0)).collect();
+        for normal in [plane.normal, scaled(plane.normal, -1.0)] {
+            for (x, wide) in &fields {
+                for (y, high) in &fields {
+                    let centre = along(along(foot, axes[0], *x), axes[1], *y);
+                    self.add(centre, Extent::Within(wide.hypot(*high)), Cone::of(normal), 4.0 * wide * high, true);
+                }
+            }
+        }
+        self.beyond(plane, foot, places.last().copied().unwrap_or(0.0));
+    }
+
+    fn beyond(&mut self, plane: &Plane, foot: Vector, hole: f64) {
+        for normal in [plane.normal, scaled(plane.normal, -1.0)] {
+            self.add(foot, Extent::Beyond(hole), Cone::of(normal), f64::INFINITY, true);
+        }
+    }
+
+    /// A mesh in so many pieces of triangles that are near each other.
+    fn mesh(&mut self, mesh: &Mesh, pieces: usize, is_within: bool) {
+        let is_convex = mesh.is_convex() && !is_within;
+        for piece in mesh.pieces(pieces) {
+            let half = piece.normals.iter().map(|normal| angle(piece.normal, *normal)).fold(0.0, f64::max);
+            let normals = Cone { axis: piece.normal, half };
+            let extent = Extent::Within(piece.radius);
+            self.add(piece.centre, extent, normals, piece.area, is_convex);
+            if !(is_convex && mesh.is_closed()) {
+                self.add(piece.centre, extent, normals.reversed(), piece.area, is_convex);
+            }
+        }
+    }
+}
+
+/// The six sides of a cube: the direction of each, and two across it.
+fn sides() -> [(Vector, [Vector; 2]); 6] {
+    let axis = |k: usize, sign: f64| [0, 1, 2].map(|c| if c == k { sign } else { 0.0 });
+    [0, 1, 2, 3, 4, 5].map(|side| {
+        let k = side % 3;
+        (axis(k, if side < 3 { 1.0 } else { -1.0 }), [axis((k + 1) % 3, 1.0), axis((k + 2) % 3, 1.0)])
+    })
+}
+
+/// The solid angle of a triangle (Van Oosterom and Strackee 1983).
+fn triangle(a: Vector, b: Vector, c: Vector) -> f64 {
+    let volume = dot(a, cross(b, c)).abs();
+    let half = volume.atan2(1.0 + dot(a, b) + dot(b, c) + dot(c, a));
+    if half < 0.0 { 2.0 * half + TAU } else { 2.0 * half }
+}
+
+impl Patch {
+    /// How far it goes beyond its centre in a direction.
+    pub(super) fn reach(&self, direction: Vector) -> f64 {
+        let Extent::Within(radius) = self.extent else { return f64::INFINITY };
+        if self.normals.half > 0.0 {
+            return radius;
+        }
+        let cosine = dot(self.normals.axis, direction);
+        radius * (1.0 - cosine * cosine).max(0.0).sqrt()
+    }
+
+    /// Largest irradiance by a light that nothing hides, over that of its spectrum.
+    pub(super) fn lit(&self, source: &Source) -> f64 {
+        match (source.place, self.extent) {
+            (Place::Surround, _) => 1.0,
+            (Place::Directional(towards), _) => self.normals.most_cosine(&Cone::of(towards)),
+            (Place::Point(place, reference), Extent::Within(radius)) => {
+                let cosine = self.normals.most_cosine(&Cone::between(self.centre, place, radius));
+                let nearest = length(minus(place, self.centre)) - radius;
+                match (cosine, nearest) {
+                    (0.0, _) => 0.0,
+                    (_, nearest) if nearest <= 0.0 => f64::INFINITY,
+                    (cosine, nearest) => cosine * (reference / nearest).powi(2),
+                }
+            }
+            (Place::Point(place, reference), Extent::Beyond(hole)) => {
+                let (height, aside) = self.from_plane(place);
+                let far = (hole - aside).max(0.0);
+                if height <= 0.0 { 0.0 } else { reference * reference * height / height.hypot(far).powi(3) }
+            }
+        }
+    }
+
+    /// How high a place is above the plane of a flat patch, and how far from its centre along the plane.
+    pub(super) fn from_plane(&self, place: Vector) -> (f64, f64) {
+        let from = minus(place, self.centre);
+        let height = dot(from, self.normals.axis);
+        (height, length(along(from, self.normals.axis, -height)))
+    }
+
+    /// False where the camera sees nothing of it.
+    pub(super) fn may_be_seen(&self, scene: &Scene) -> bool {
+        let camera = &scene.camera;
+        let [right, up, forward] = camera.axes;
+        let tall = scene.size.1 as f64 / scene.size.0 as f64;
+        let Extent::Within(radius) = self.extent else { return self.plane_may_be_seen(scene) };
+        let from = minus(self.centre, camera.place);
+        match camera.projection {
+            Projection::Orthographic { width } => {
+                let is_near = |axis: Vector, half: f64| dot(from, axis).abs() <= half + radius * (1.0 + 1e-9);
+                self.normals.most_cosine(&Cone::of(scaled(forward, -1.0))) > 0.0
+                    && is_near(right, width / 2.0)
+                    && is_near(up, width / 2.0 * tall)
+            }
+            Projection::Perspective { width_deg } => {
+                let to_camera = Cone::between(self.centre, camera.place, radius);
+                let corner = ((width_deg / 2.0).to_radians().tan() * 1.0_f64.hypot(tall)).atan();
+                self.normals.most_cosine(&to_camera) > 0.0
+                    && to_camera.reversed().most_cosine(&Cone { axis: forward, half: corner }) > 0.0
+                    && (to_camera.half >= 1.5
+                        || angle(to_camera.reversed().axis, forward) <= corner + to_camera.half + 1e-9)
+            }
+        }
+    }
+
+    /// The rest of a plane is not seen where the four corners of the film all look into its hole.
+    fn plane_may_be_seen(&self, scene: &Scene) -> bool {
+        let Extent::Beyond(hole) = self.extent else { return true };
+        let tall = scene.size.1 as f64 / scene.size.0 as f64;
+        let is_in_hole = |(x, y): (f64, f64)| {
+            let (from, towards) = scene.camera.ray(x, y);
+            let (height, _) = self.from_plane(from);
+            let slope = dot(towards, self.normals.axis);
+            if height * slope >= 0.0 {
+                return false;
+            }
+            let (_, aside) = self.from_plane(along(from, towards, -height / slope));
+            aside < hole
+        };
+        ![(-1.0, -tall), (1.0, -tall), (1.0, tall), (-1.0, tall)].into_iter().all(is_in_hole)
+    }
+}
