@@ -38,8 +38,19 @@ impl Cone {
 
     /// The largest cosine between a direction of one and one of the other, and 0 where all are beyond a right angle.
     pub(super) fn most_cosine(&self, other: &Self) -> f64 {
+        self.most_cosine_of_any(other).max(0.0)
+    }
+
+    /// The same, below 0 there.
+    pub(super) fn most_cosine_of_any(&self, other: &Self) -> f64 {
         let least = angle(self.axis, other.axis) - self.half - other.half - ROUNDING;
-        least.max(0.0).cos().max(0.0)
+        least.max(0.0).cos()
+    }
+
+    /// The least cosine between a direction of one and one of the other, and 0 where one is beyond a right angle.
+    pub(super) fn least_cosine(&self, other: &Self) -> f64 {
+        let most = angle(self.axis, other.axis) + self.half + other.half + ROUNDING;
+        most.min(PI).cos().max(0.0)
     }
 }
 

@@ -18,6 +18,11 @@ const ORDERS: usize = 64;
 const MOST_KEPT: usize = 6_000_000;
 /// What falls by less than this in every order is not bounded.
 const FALLS: f64 = 0.999;
+/// The rest over the first order that is not looked at any closer.
+const SMALL: f64 = 1e-4;
+/// Orders whose colours are told apart, and ways at most.
+const WAYS_OF_ORDERS: u32 = 2;
+const MOST_WAYS: usize = 24;
 /// What roundings may take from a share.
 const ROUNDING: f64 = 1.0 + 1e-9;
 
@@ -30,6 +35,15 @@ pub(super) struct Exchange {
     shares: Vec<Vec<(usize, f64)>>,
     /// \[patch\]\[light\]: largest irradiance over that of its spectrum.
     lit: Vec<Vec<f64>>,
+}
+
+/// Light that comes from a light over bodies of these materials, the last first.
+#[derive(Clone)]
+pub(super) struct Way {
+    pub(super) materials: Vec<usize>,
+    pub(super) light: usize,
+    /// Its largest share at each patch.
+    pub(super) most: Vec<f64>,
 }
 
 /// Largest irradiances of the patches by light that has gone from body to body, once, twice and so on.
@@ -71,11 +85,17 @@ fn share(from: &Patch, of: &Patch) -> f64 {
                 return 0.0;
             }
             let nearest = length(way) - near;
+            // A flat patch lies in the part of the hemisphere that its plane cuts off.
+            let tilt = if of.normals.half == 0.0 {
+                ROUNDING * f64::midpoint(1.0, from.normals.most_cosine_of_any(&of.normals.reversed()))
+            } else {
+                1.0
+            };
             if nearest <= radius {
-                return 1.0;
+                return tilt.min(1.0);
             }
             let by_area = cosines[0] * cosines[1] * of.area * FRAC_1_PI / (nearest - radius).powi(2);
-            of_ball(radius / nearest, cosines[0]).min(by_area * ROUNDING)
+            of_ball(radius / nearest, cosines[0]).min(by_area * ROUNDING).min(tilt)
         }
         (Extent::Within(_), Extent::Beyond(hole)) => {
             let (height, aside) = of.from_plane(from.centre);
@@ -141,10 +161,10 @@ impl Exchange {
         self.lit.iter().flatten().all(|value| value.is_finite())
     }
 
-    /// The largest share of each light that a patch gets from bodies of one material.
-    pub(super) fn first(&self, patch: usize, light: usize, is_of: impl Fn(usize) -> bool) -> f64 {
-        let seen = self.shares[patch].iter().filter(|(of, _)| is_of(self.patches[*of].body));
-        let mut seen: Vec<(f64, f64)> = seen.map(|(of, share)| (self.lit[*of][light], *share)).collect();
+    /// The largest sum that a patch gets of what others send, from those patches that are asked for.
+    fn gathered(&self, patch: usize, sent: &[f64], is_of: impl Fn(usize) -> bool) -> f64 {
+        let seen = self.shares[patch].iter().filter(|(of, _)| sent[*of] > 0.0 && is_of(self.patches[*of].body));
+        let mut seen: Vec<(f64, f64)> = seen.map(|(of, share)| (sent[*of], *share)).collect();
         seen.sort_by(|a, b| b.0.total_cmp(&a.0));
         // The brightest first, until the hemisphere is full.
         let mut left = 1.0_f64;
@@ -153,6 +173,27 @@ impl Exchange {
             left -= taken;
             sum + taken * value
         })
+    }
+
+    /// The ways of the first orders, and how many orders they are.
+    pub(super) fn ways(&self, scene: &Scene) -> (Vec<Way>, u32) {
+        let materials = scene.materials.len();
+        let lit = |light: usize| self.lit.iter().map(|list| list[light]).collect();
+        let mut last: Vec<Way> =
+            (0..scene.sources.len()).map(|light| Way { materials: Vec::new(), light, most: lit(light) }).collect();
+        let (mut all, mut orders) = (Vec::new(), 0);
+        while orders < WAYS_OF_ORDERS && last.len() * materials <= MOST_WAYS {
+            let further = |way: &Way, material: usize| {
+                let is_of = |body: usize| scene.bodies[body].material == material;
+                let most = (0..self.patches.len()).map(|patch| self.gathered(patch, &way.most, is_of)).collect();
+                Way { materials: [&[material][..], &way.materials].concat(), light: way.light, most }
+            };
+            last = last.iter().flat_map(|way| (0..materials).map(move |material| further(way, material))).collect();
+            last.retain(|way| way.most.iter().any(|most| *most > 0.0));
+            all.extend(last.iter().cloned());
+            orders += 1;
+        }
+        (all, orders)
     }
 
     /// The orders of a scene; `None` where they do not fall.
@@ -174,7 +215,7 @@ impl Exchange {
             all.ratio = falls.fold(0.0, f64::max);
             last.clone_from(&next);
             all.each.push(next);
-            if all.ratio == 0.0 {
+            if all.has_rest_below(SMALL) {
                 return Some(all);
             }
         }
@@ -215,6 +256,11 @@ impl Exchange {
 }
 
 impl Orders {
+    fn has_rest_below(&self, part: f64) -> bool {
+        let most = |order: Option<&Vec<Vec<f64>>>| order.into_iter().flatten().flatten().copied().fold(0.0, f64::max);
+        self.ratio < FALLS && most(self.each.last()) * self.ratio / (1.0 - self.ratio) <= part * most(self.each.first())
+    }
+
     /// The sum of all that has gone from body to body more than `kept` times, and not more often than the scene asks for.
     pub(super) fn beyond(&self, kept: u32, bounces: Bounces) -> Vec<Vec<f64>> {
         let (kept, stored) = (kept as usize, self.each.len());

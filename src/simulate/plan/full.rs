@@ -9,7 +9,7 @@ use super::super::picture::Prepared;
 use super::super::scene::{Body, Bounces, Scene};
 use super::super::source::Source;
 use super::bound::Bound;
-use super::exchange::{Exchange, Orders};
+use super::exchange::{Exchange, Orders, Way};
 use super::reach::Reach;
 
 /// The full picture, against which plans are held.
@@ -29,16 +29,19 @@ pub(super) struct Between {
     pub(super) exchange: Exchange,
     /// `None` where nothing bounds them.
     orders: Option<Orders>,
+    /// Ways of so many first orders, whose colours are known.
+    pub(super) ways: Vec<Way>,
+    known: u32,
 }
 
 /// Largest irradiances of bodies by light from others.
 pub(super) struct Indirect {
-    /// Of each body where the camera may see it.
-    pub(super) seen: Vec<Vec<f64>>,
+    /// Of each patch.
+    pub(super) by_patch: Vec<Vec<f64>>,
     /// Of each body anywhere.
     pub(super) anywhere: Vec<Vec<f64>>,
-    /// Whether light by one other body comes to it.
-    pub(super) has_first: bool,
+    /// The ways that come to it, of those whose colours are known: those over more bodies than this, and at most so many.
+    pub(super) known: std::ops::Range<usize>,
 }
 
 impl<'a> Full<'a> {
@@ -77,7 +80,8 @@ impl<'a> Full<'a> {
             let materials: Vec<_> = self.scene.bodies.iter().map(of).collect();
             let is_bounded = self.reach.is_matte() && exchange.is_finite();
             let orders = if is_bounded { exchange.orders(&materials, &self.prepared.lights(self.scene)) } else { None };
-            Between { exchange, orders }
+            let (ways, known) = if is_bounded { exchange.ways(self.scene) } else { (Vec::new(), 0) };
+            Between { exchange, orders, ways, known }
         })
     }
 
@@ -96,20 +100,20 @@ impl<'a> Full<'a> {
         Some(all)
     }
 
-    /// Light that goes from body to body more often than `kept`.
+    /// Light that goes from body to body more often than `kept`: the first orders are known by their colours, the rest by its size.
     fn indirect(&self, kept: u32) -> Option<Indirect> {
-        let Between { exchange, orders } = self.between();
-        let by_patch = orders.as_ref()?.beyond(kept, self.choice.bounces);
-        let most = |is_of: &dyn Fn(usize) -> bool| {
-            let mut most: Vec<Vec<f64>> = self.lit().into_iter().map(|list| vec![0.0; list.len()]).collect();
-            for (number, (patch, incident)) in exchange.patches.iter().zip(&by_patch).enumerate() {
-                if is_of(number) {
-                    most[patch.body].iter_mut().zip(incident).for_each(|(most, e)| *most = most.max(*e));
-                }
-            }
-            most
+        let Between { exchange, orders, known, .. } = self.between();
+        let most = match self.choice.bounces {
+            Bounces::All => *known,
+            Bounces::Most(most) => most.min(*known),
         };
-        Some(Indirect { seen: most(&|patch| exchange.is_seen[patch]), anywhere: most(&|_| true), has_first: false })
+        let orders = orders.as_ref()?;
+        let by_patch = orders.beyond(kept.max(most), self.choice.bounces);
+        let mut anywhere: Vec<Vec<f64>> = self.lit().into_iter().map(|list| vec![0.0; list.len()]).collect();
+        for (patch, incident) in exchange.patches.iter().zip(&orders.beyond(kept, self.choice.bounces)) {
+            anywhere[patch.body].iter_mut().zip(incident).for_each(|(most, e)| *most = most.max(*e));
+        }
+        Some(Indirect { by_patch, anywhere, known: kept as usize..most as usize })
     }
 
     /// True where an effect adds exactly nothing anywhere.
@@ -162,8 +166,6 @@ impl<'a> Full<'a> {
         let goes_round = !self.is_nothing(Effect::Interreflection);
         let indirect = match kept {
             _ if !goes_round => Some(None),
-            // The first order is known by its colours, the rest by its size.
-            Some(0) => self.indirect(1).map(|rest| Some(Indirect { has_first: true, ..rest })),
             Some(kept) if Bounces::Most(kept) != self.choice.bounces => self.indirect(kept).map(Some),
             _ => Some(None),
         };

@@ -61,8 +61,8 @@ struct Box_ {
     bound: f64,
 }
 
-/// Bounds the distance over all factors.
-pub(super) fn largest(factors: &[Factor]) -> Largest {
+/// Bounds the distance over all factors; where it is below `floor`, it may say `floor`.
+pub(super) fn largest(factors: &[Factor], floor: f64) -> Largest {
     let black = Largest { bound: 0.0, at: [[0.0; 3]; 2] };
     let factors: Vec<Factor> = factors
         .iter()
@@ -82,7 +82,7 @@ pub(super) fn largest(factors: &[Factor]) -> Largest {
     for _ in 0..BOXES {
         let Some(worst) = (0..boxes.len()).max_by(|a, b| boxes[*a].bound.total_cmp(&boxes[*b].bound)) else { break };
         // The last factor is for values that neither matters for.
-        if boxes[worst].bound <= CLOSE * best.0 || boxes[worst].bound < 1e-9 {
+        if boxes[worst].bound <= floor.max(CLOSE * best.0) || boxes[worst].bound < 1e-9 {
             break;
         }
         let whole = boxes.swap_remove(worst);
@@ -100,7 +100,7 @@ pub(super) fn largest(factors: &[Factor]) -> Largest {
         for (low, high) in [(whole.low, below), (above, whole.high)] {
             let half = on(&factors, low, high, &mut best);
             // What is proven below a distance that occurs needs no more looking at.
-            if half.bound > best.0 {
+            if half.bound > best.0.max(floor) {
                 boxes.push(half);
             }
         }
@@ -178,7 +178,7 @@ mod tests {
                     }
                 })
                 .collect();
-            let found = largest(&factors);
+            let found = largest(&factors, 0.0);
             let mut most = 0.0_f64;
             for _ in 0..2000 {
                 let g: Vec<f64> = factors

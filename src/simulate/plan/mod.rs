@@ -5,9 +5,10 @@ mod cone;
 mod exchange;
 mod full;
 mod lab;
-mod parts;
+mod left;
 mod patch;
 mod reach;
+mod region;
 mod rings;
 
 pub use bound::Bound;

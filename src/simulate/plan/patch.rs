@@ -8,7 +8,7 @@ use super::super::shape::{Ball, Cuboid, Mesh, Plane, Rectangle, Shape};
 use super::super::source::{Place, Source};
 use super::super::vector::{Vector, across, along, cross, dot, length, minus, plus, scaled, unit};
 use super::cone::{Cone, angle};
-use super::reach::is_seen_from_outside;
+use super::reach::{is_seen_from_outside, may_shade, may_shade_itself};
 
 /// How far a patch goes.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -35,15 +35,16 @@ pub(super) struct Patch {
 /// How finely bodies are cut: as many patches as a scene of so many bodies leaves time for.
 fn fineness(bodies: usize) -> usize {
     match bodies {
-        0..=4 => 3,
-        5..=12 => 2,
-        13..=60 => 1,
+        0..=3 => 4,
+        4..=6 => 3,
+        7..=16 => 2,
+        17..=60 => 1,
         _ => 0,
     }
 }
 
 /// Edges of the parts of a plane without end, in radii of what else there is.
-const EDGES: [&[f64]; 4] = [&[2.0], &[1.0, 4.0], &[0.6, 2.0, 8.0], &[0.3, 0.8, 1.6, 4.0, 12.0]];
+const EDGES: [&[f64]; 5] = [&[2.0], &[1.0, 4.0], &[0.6, 2.0, 8.0], &[0.3, 0.8, 2.0, 8.0], &[0.25, 0.5, 1.0, 2.5, 10.0]];
 
 /// Cuts all bodies.
 pub(super) fn cut(scene: &Scene) -> Vec<Patch> {
@@ -66,7 +67,7 @@ pub(super) fn cut(scene: &Scene) -> Vec<Patch> {
                 (None, Some(middle)) => cutter.plane(plane, middle, EDGES[fine]),
                 (None, None) => cutter.beyond(plane, plane.point, 0.0),
             },
-            Shape::Mesh(mesh) => cutter.mesh(mesh, 12 * fine, is_within),
+            Shape::Mesh(mesh) => cutter.mesh(mesh, 16 * fine, is_within),
         }
     }
     all
@@ -243,6 +244,27 @@ impl Patch {
                 if height <= 0.0 { 0.0 } else { reference * reference * height / height.hypot(far).powi(3) }
             }
         }
+    }
+
+    /// Least irradiance by a light that nothing hides.
+    pub(super) fn least_lit(&self, source: &Source) -> f64 {
+        let Extent::Within(radius) = self.extent else { return 0.0 };
+        match source.place {
+            Place::Surround => 0.0,
+            Place::Directional(towards) => self.normals.least_cosine(&Cone::of(towards)),
+            Place::Point(place, reference) => {
+                let farthest = length(minus(place, self.centre)) + radius;
+                self.normals.least_cosine(&Cone::between(self.centre, place, radius)) * (reference / farthest).powi(2)
+            }
+        }
+    }
+
+    /// True unless provably nothing stands before a light.
+    pub(super) fn is_shaded(&self, scene: &Scene, source: &Source) -> bool {
+        let Extent::Within(radius) = self.extent else { return true };
+        let ball = Shape::Sphere(Ball { centre: self.centre, radius });
+        let other = |(number, body): (usize, &Body)| number != self.body && may_shade(&body.shape, &ball, source);
+        may_shade_itself(scene, self.body, source) || scene.bodies.iter().enumerate().any(other)
     }
 
     /// How high a place is above the plane of a flat patch, and how far from its centre along the plane.

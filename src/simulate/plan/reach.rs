@@ -9,7 +9,7 @@ use super::super::vector::{dot, length, minus, scaled};
 use super::rings::{Ring, distance, rings};
 
 /// The light from all around at an interface is tabulated; its largest value may lie between two of the table, and beside its sum.
-pub(super) const TABLE: f64 = 1.05;
+const TABLE: f64 = 1.05;
 
 /// How much of each light there may be on each body.
 pub(super) struct Reach {
@@ -68,7 +68,13 @@ impl Reach {
             scene
                 .sources
                 .iter()
-                .map(|source| bodies.clone().any(|caster| may_shade(scene, caster, body, source)))
+                .map(|source| {
+                    let other = |caster: usize| {
+                        let shapes = [caster, body].map(|number| &scene.bodies[number].shape);
+                        caster != body && may_shade(shapes[0], shapes[1], source)
+                    };
+                    may_shade_itself(scene, body, source) || bodies.clone().any(other)
+                })
                 .collect()
         };
         let seen: Vec<Vec<f64>> =
@@ -90,6 +96,15 @@ impl Reach {
     /// True where light may go from one body to another, or from one part of a body to another.
     pub(super) fn is_open(&self) -> bool {
         self.seen.iter().flatten().all(|share| *share == 0.0)
+    }
+
+    /// The share of light from all around that the interface of a body sends on at most.
+    pub(super) fn mirror(&self, scene: &Scene, body: usize) -> f64 {
+        if self.mirrored[body] > 0.0 {
+            return self.mirrored[body];
+        }
+        let term = scene.materials[scene.bodies[body].material].specular;
+        term.map_or(0.0, |term| TABLE * Interface::new(&term).surrounded().into_iter().fold(0.0, f64::max))
     }
 
     /// True where every body that can be seen from another has no interface.
@@ -122,14 +137,16 @@ pub(super) fn is_seen_from_outside(scene: &Scene, body: &Body) -> bool {
     }
 }
 
-/// True unless a body provably casts no shadow of a light on another, or on itself.
-pub(super) fn may_shade(scene: &Scene, caster: usize, receiver: usize, source: &Source) -> bool {
-    let (one, other) = (&scene.bodies[caster].shape, &scene.bodies[receiver].shape);
+/// True unless a body provably casts no shadow of a light on itself.
+pub(super) fn may_shade_itself(scene: &Scene, body: usize, source: &Source) -> bool {
+    let body = &scene.bodies[body];
+    !source.is_surround() && !(body.shape.is_convex() && is_seen_from_outside(scene, body))
+}
+
+/// True unless a body provably casts no shadow of a light on another.
+pub(super) fn may_shade(one: &Shape, other: &Shape, source: &Source) -> bool {
     if source.is_surround() {
         return false;
-    }
-    if caster == receiver {
-        return !(one.is_convex() && is_seen_from_outside(scene, &scene.bodies[caster]));
     }
     if let Shape::Plane(plane) = one {
         // A plane is between a light and a body only where they are on either side of it.

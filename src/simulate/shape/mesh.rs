@@ -126,23 +126,14 @@ impl Mesh {
         self.is_closed
     }
 
-    /// All of it in so many pieces at most.
-    pub(in crate::simulate) fn pieces(&self, most: usize) -> impl Iterator<Item = Piece> {
+    /// All of it in so many pieces at most; a few large triangles in parts.
+    pub(in crate::simulate) fn pieces(&self, most: usize) -> Vec<Piece> {
+        let mut triangles = self.triangles.clone();
+        while 4 * triangles.len() <= most {
+            triangles = triangles.iter().flat_map(Triangle::quarters).collect();
+        }
         // The tree has put together what is near.
-        self.triangles.chunks(self.triangles.len().div_ceil(most.max(1))).map(|triangles| {
-            let (low, high) = ends(triangles);
-            let centre = scaled(plus(low, high), 0.5);
-            let far = triangles.iter().flat_map(Triangle::corners).map(|at| length(minus(at, centre)));
-            let twice = |one: &Triangle| length(cross(one.sides[0], one.sides[1]));
-            let sum = triangles.iter().fold([0.0; 3], |sum, one| along(sum, one.normal, twice(one)));
-            Piece {
-                centre,
-                radius: far.fold(0.0, f64::max),
-                normals: triangles.iter().map(|one| one.normal).collect(),
-                normal: unit(sum).unwrap_or(triangles[0].normal),
-                area: triangles.iter().map(twice).sum::<f64>() / 2.0,
-            }
-        })
+        triangles.chunks(triangles.len().div_ceil(most.max(1))).map(Piece::of).collect()
     }
 
     /// Normals of the triangles.
@@ -187,7 +178,33 @@ impl Mesh {
     }
 }
 
+impl Piece {
+    fn of(triangles: &[Triangle]) -> Self {
+        let (low, high) = ends(triangles);
+        let centre = scaled(plus(low, high), 0.5);
+        let far = triangles.iter().flat_map(Triangle::corners).map(|at| length(minus(at, centre)));
+        let twice = |one: &Triangle| length(cross(one.sides[0], one.sides[1]));
+        let sum = triangles.iter().fold([0.0; 3], |sum, one| along(sum, one.normal, twice(one)));
+        Self {
+            centre,
+            radius: far.fold(0.0, f64::max),
+            normals: triangles.iter().map(|one| one.normal).collect(),
+            normal: unit(sum).unwrap_or(triangles[0].normal),
+            area: triangles.iter().map(twice).sum::<f64>() / 2.0,
+        }
+    }
+}
+
 impl Triangle {
+    /// Four of half the size.
+    fn quarters(&self) -> [Self; 4] {
+        let half = self.sides.map(|side| scaled(side, 0.5));
+        let of = |corner: Vector| Self { corner, sides: half, normal: self.normal };
+        let across = plus(plus(self.corner, half[0]), half[1]);
+        let middle = Self { corner: across, sides: half.map(|side| scaled(side, -1.0)), normal: self.normal };
+        [of(self.corner), of(plus(self.corner, half[0])), of(plus(self.corner, half[1])), middle]
+    }
+
     fn corners(&self) -> [Vector; 3] {
         [self.corner, plus(self.corner, self.sides[0]), plus(self.corner, self.sides[1])]
     }
