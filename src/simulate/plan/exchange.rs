@@ -21,8 +21,8 @@ const FALLS: f64 = 0.999;
 /// The rest over the first order that is not looked at any closer.
 const SMALL: f64 = 1e-4;
 /// Orders whose colours are told apart, and ways at most.
-const WAYS_OF_ORDERS: u32 = 2;
-const MOST_WAYS: usize = 24;
+const WAYS_OF_ORDERS: u32 = 4;
+const MOST_WAYS: usize = 32;
 /// What roundings may take from a share.
 const ROUNDING: f64 = 1.0 + 1e-9;
 
