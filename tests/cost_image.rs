@@ -14,6 +14,7 @@ use bbrf::donaldson::{Colour, Observer};
 use bbrf::simulate::image::Srgb;
 use common::ladders::{bbrf, cost};
 use common::rooms::{room, scene};
+use exr::prelude::{ReadChannels, ReadLayers, read};
 use nalgebra::{Matrix3, Vector3};
 use predicates::str::contains;
 use serde_json::Value;
@@ -24,7 +25,8 @@ fn colours(folder: &Path, white: &Value) -> Vec<Colour> {
     let display = Srgb::new(white, 1.0).unwrap();
     let columns = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(|xyz| Vector3::from(display.linear(xyz)));
     let back = Matrix3::from_columns(&columns).try_inverse().unwrap();
-    let image = exr::prelude::read_all_data_from_file(folder.join("layers.exr")).unwrap();
+    let reader = read().no_deep_data().largest_resolution_level().all_channels().all_layers().all_attributes();
+    let image = reader.from_file(folder.join("layers.exr")).unwrap();
     let total = image.layer_data.iter().find(|one| one.attributes.layer_name == Some("total".into())).unwrap();
     let channel = |name: &str| -> Vec<f32> {
         let channel = total.channel_data.list.iter().find(|one| one.name.to_string() == name).unwrap();
