@@ -52,7 +52,8 @@ pub fn image_ladder(scene: &Scene, subject: String, patience: Patience) -> Resul
             read: None,
         });
     }
-    let noise = if full.noise.is_empty() { "" } else { "; its own noise is part of the error of other samples" };
+    let noise =
+        if full.noise.is_empty() { "" } else { "; its own noise is part of the error of other samples and bounces" };
     let meaning = Meaning {
         reference: format!(
             "the scene simulated in full, with the whole product at every pixel, and the same seed and samples{noise}"

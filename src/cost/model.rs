@@ -126,7 +126,7 @@ fn meaning(asked: &ModelLadder<'_>) -> Meaning {
     Meaning {
         reference: format!("`bbrf eval --light {}` by exact integrals", asked.light.name()),
         error: format!(
-            "largest r.m.s. difference of the radiance over all emissions at one of {} geometries, over its r.m.s.",
+            "largest r.m.s. difference of the radiance over all emissions at one of {} geometries, over the r.m.s. of the radiance",
             asked.geometries.len()
         ),
         axis: "largest relative difference of the radiance".to_owned(),
