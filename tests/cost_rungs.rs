@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 
 use bbrf::container::read_file;
 use bbrf::cost::parameter_distance;
-use common::ladders::{bbrf, cost, json, matrix, run, rung_of, scan, words};
+use common::ladders::{bbrf, cost, matrix, run, rung_of, scan, words};
 use predicates::str::contains;
 use serde_json::Value;
 
