@@ -4,72 +4,19 @@
 
 mod common {
     pub mod bispectral;
+    pub mod rooms;
 }
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use assert_cmd::Command;
-use bbrf::container::write_file;
-use bbrf::dataset::Document;
+use common::rooms::{SPHERE, room, scene};
 use predicates::prelude::PredicateBooleanExt;
 use predicates::str::contains;
 use serde_json::Value;
 
 fn bbrf() -> Command {
     Command::cargo_bin("bbrf").unwrap()
-}
-
-const SPHERE: &str = r#"bounces = 0
-[film]
-width = 48
-height = 32
-samples = 4
-[wavelengths]
-from = 300
-to = 780
-step = 10
-[camera]
-projection = "orthographic"
-width = 3
-from = [0, 0, 5]
-at = [0, 0, 0]
-[[material]]
-name = "orange"
-file = "orange.bbrf"
-specular = { intensity = 30, roughness = 0.05, refractive_index = 1.45 }
-[[light]]
-spectrum = "D65"
-towards = [0, 0, 1]
-[[object]]
-material = "orange"
-sphere = { centre = [0, 0, 0], radius = 1 }
-"#;
-
-/// A dimmer orange on a white floor: light goes from one to the other, and none comes from nowhere.
-fn room() -> String {
-    let floor = "[[material]]\nname = \"white\"\nalbedo = 0.8\n\
-        [[object]]\nmaterial = \"white\"\nplane = { point = [0, -1, 0], normal = [0, 1, 0] }\n";
-    let light =
-        SPHERE.replace("towards = [0, 0, 1]", "towards = [1, 1, 1]").replace("from = [0, 0, 5]", "from = [0, 2, 5]");
-    light
-        .replace("bounces = 0", "bounces = 3")
-        .replace("intensity = 30", "intensity = 3")
-        .replace("orange.bbrf", "dim.bbrf")
-        + floor
-}
-
-/// A scene beside the files that it may name.
-fn scene(folder: &Path, text: &str) -> PathBuf {
-    let document = Document { license: Some("CC-BY-4.0".to_owned()), ..common::bispectral::document() };
-    write_file(&document, &folder.join("orange.bbrf")).unwrap();
-    let (excitation, emission, values) = common::bispectral::values(10.0);
-    let sigma = Some(values.mapv(|_| 0.001));
-    let dim = common::bispectral::measurement("dim", &excitation, &emission, 0.8 * values, sigma, None);
-    let document = Document { measurements: vec![dim], ..document };
-    write_file(&document, &folder.join("dim.bbrf")).unwrap();
-    let path = folder.join("scene.toml");
-    std::fs::write(&path, text).unwrap();
-    path
 }
 
 fn names(folder: &Path) -> Vec<String> {
@@ -300,7 +247,28 @@ fn a_ladder_of_a_scene_names_the_plan_to_render_with() {
     let error = |name: &str| rungs.iter().find(|rung| rung["name"] == name).unwrap()["error"].as_f64().unwrap();
     assert_eq!(error("everything"), 0.0);
     assert!(error("tolerance 0") < 1e-3 && error("tolerance 10") <= 10.0, "{rungs:#?}");
-    assert!(error("1 samples") > 0.1, "fewer samples are noisier");
+    assert!(error("1 sample") > 0.1, "fewer samples are noisier");
+    assert!(error("plan, product by pixel") < 1e-3 && error("0 bounces") > error("2 bounces"), "{rungs:#?}");
     let answer = found["answer"]["command"].as_str().unwrap();
     assert!(answer.starts_with("bbrf render ") && !answer.contains("--samples"), "{answer}");
+}
+
+#[test]
+fn the_annotated_scene_of_the_manual_has_every_key_and_can_be_planned() {
+    let folder = tempfile::tempdir().unwrap();
+    let manual = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/rendering.md")).unwrap();
+    let text = manual.split("```toml\n").nth(1).unwrap().split("```").next().unwrap();
+    let path = scene(folder.path(), &text.replace("orange.bbrf", "dim.bbrf"));
+    std::fs::write(folder.path().join("wall.csv"), "300,0.6\n780,0.7\n").unwrap();
+    std::fs::write(folder.path().join("thing.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap();
+    bbrf().arg("plan").arg(&path).assert().success().stdout(contains("interreflection"));
+    let schema = bbrf().args(["schema", "scene"]).assert().success().get_output().stdout.clone();
+    let schema: Value = serde_json::from_slice(&schema).unwrap();
+    let sections = schema["$defs"].as_object().unwrap().values().chain([&schema]);
+    let keys: Vec<&String> =
+        sections.filter_map(|section| section["properties"].as_object()).flat_map(|keys| keys.keys()).collect();
+    assert!(keys.len() > 40, "{keys:?}");
+    let words: Vec<&str> = text.split(|c: char| !(c.is_alphanumeric() || c == '_')).collect();
+    let missing: Vec<&&String> = keys.iter().filter(|key| !words.contains(&key.as_str())).collect();
+    assert!(missing.is_empty(), "{missing:?}");
 }

@@ -5,12 +5,15 @@
 mod bispectral;
 #[path = "common/scans.rs"]
 mod scans;
+#[path = "common/units.rs"]
+mod units;
 
 use bbrf::donaldson::{Extend, Light, Observer};
 use bbrf::simulate::convex::{Colours, Component, Lighting, Renderer, Scene, Sphere, Way, render_dense};
 use bbrf::simulate::{Film, Spectral};
 use bbrf::terms::{Denominator, Distribution, TorranceSparrow};
 use scans::Random;
+use units::units;
 
 const SIZE: (usize, usize) = (43, 37);
 
@@ -66,15 +69,6 @@ fn scene(random: &mut Random, point: bool) -> Scene {
     };
     let colours = Colours { luminescent: colour(random), diffuse: colour(random), specular: colour(random) };
     Scene::new(sphere.unwrap(), lighting, colours, lobe(random)).unwrap()
-}
-
-/// Units in the last place between two numbers of single precision.
-fn units(a: f32, b: f32) -> i64 {
-    let ordered = |x: f32| {
-        let bits = i64::from(x.to_bits() & 0x7fff_ffff);
-        if x.is_sign_negative() { -bits } else { bits }
-    };
-    (ordered(a) - ordered(b)).abs()
 }
 
 /// The worst pixel.

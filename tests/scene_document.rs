@@ -164,68 +164,44 @@ fn what_is_left_out_has_the_values_of_the_schema() {
     );
 }
 
+/// Of [`WHOLE`]: what is changed, into what, and what is said of it; `\n` is the end of a line.
+const WRONG: &str = r#"radius = 1 >> radius = -1 >> scene.toml, line 51, column 32, `object.sphere.radius`: found -1; expected a number above 0
+material = "red" >> material = "rot" >> line 54, column 1, `object.material`: found `rot`; expected one of: grey, red
+radius = 1 >> radus = 1 >> line 51, column 32, `object.sphere.radus`: unknown field `radus`, expected `centre` or `radius`
+width = 4 >> width = "4" >> line 5, column 9, `film.width`: invalid type: string "4", expected usize
+width = 4 >> width = 40000 >> line 5, column 1, `film.width`: found 40000; expected 1 to 32768 pixels
+exposure = 2 >> exposure = inf >> line 9, column 12, `film.exposure`: inf; expected a finite number below 1e9
+at = [0, 4, 0] >> at = [0, nan, 0] >> `light.at`: nan; expected a finite number
+normal = [0, 5, 0] >> normal = [0, 0, 0] >> `object.plane.normal`: found [0, 0, 0], which has no direction
+up = [1, 0, 0] >> up = [0, 2, 0] >> `object.plane.up`: found `normal` and `up`
+theta_deg = 90\n >> theta_deg = 190\n >> `light.theta_deg`: found 190; expected degrees from 0 to 180
+name = "red" >> name = "grey" >> `material.name`: found a second material `grey`; expected another name
+spectrum = "A" >> spectrum = "sun" >> `light.spectrum`: sun: found no such light
+file = "red.bbrf" >> file = "no.bbrf" >> `material.file`: no.bbrf: cannot be read
+file = "red.bbrf" >> file = "red.bbrf"\nalbedo = 1 >> found 2 of `file`, `albedo` and `reflectance`; expected exactly one
+surround = true >> surround = false >> found 0 of `towards`, `theta_deg`, `at` and `surround = true`
+reference_distance = 2 >> reference_distance = 0 >> `light.reference_distance`: found 0
+refractive_index = 1.45 >> refractive_index = 0.9 >> `material.specular`: torrance-sparrow: `refractive_index`
+width_deg = 40 >> width = 40 >> `camera.projection`: found "perspective"; expected `width_deg` beside it
+width_deg = 40 >> width_deg = 180 >> `camera`: the camera sees a width of 180
+from = [0, 0, 5] >> from = [0, 0, 0] >> `camera`: the camera looks from where it stands
+step = 10 >> step = 0.01 >> `wavelengths`: wavelengths from 400 to 700 nm in steps of 0.01 nm
+observer = 10 >> observer = 5 >> line 1, column 12, `observer`: invalid value: integer `5`, expected 2 or 10, degrees
+bounces = 3 >> bounces = "many" >> expected "all" or a whole number from 0
+samples = 8 >> samples = 0 >> `film.samples`: found 0; expected 1 to
+kept = "spectra" >> kept = "both" >> unknown variant `both`, expected `colour` or `spectra`
+[camera] >> [camera >> line 17"#;
+
 #[test]
 fn an_error_names_line_column_and_key() {
-    let cases = [
-        (
-            "radius = 1",
-            "radius = -1",
-            "scene.toml, line 51, column 32, `object.sphere.radius`: found -1; expected a number above 0",
-        ),
-        (
-            "material = \"red\"",
-            "material = \"rot\"",
-            "line 54, column 1, `object.material`: found `rot`; expected one of: grey, red",
-        ),
-        (
-            "radius = 1",
-            "radus = 1",
-            "line 51, column 32, `object.sphere.radus`: unknown field `radus`, expected `centre` or `radius`",
-        ),
-        ("width = 4", "width = \"4\"", "line 5, column 9, `film.width`: invalid type: string \"4\", expected usize"),
-        ("width = 4", "width = 40000", "line 5, column 1, `film.width`: found 40000; expected 1 to 32768 pixels"),
-        (
-            "exposure = 2",
-            "exposure = inf",
-            "line 9, column 12, `film.exposure`: inf; expected a finite number below 1e9",
-        ),
-        ("at = [0, 4, 0]", "at = [0, nan, 0]", "`light.at`: nan; expected a finite number"),
-        ("normal = [0, 5, 0]", "normal = [0, 0, 0]", "`object.plane.normal`: found [0, 0, 0], which has no direction"),
-        ("up = [1, 0, 0]", "up = [0, 2, 0]", "`object.plane.up`: found `normal` and `up`"),
-        ("theta_deg = 90\n", "theta_deg = 190\n", "`light.theta_deg`: found 190; expected degrees from 0 to 180"),
-        ("name = \"red\"", "name = \"grey\"", "`material.name`: found a second material `grey`; expected another name"),
-        ("spectrum = \"A\"", "spectrum = \"sun\"", "`light.spectrum`: sun: found no such light"),
-        ("file = \"red.bbrf\"", "file = \"no.bbrf\"", "`material.file`: no.bbrf: cannot be read"),
-        (
-            "file = \"red.bbrf\"",
-            "file = \"red.bbrf\"\nalbedo = 1",
-            "found 2 of `file`, `albedo` and `reflectance`; expected exactly one",
-        ),
-        ("surround = true", "surround = false", "found 0 of `towards`, `theta_deg`, `at` and `surround = true`"),
-        ("reference_distance = 2", "reference_distance = 0", "`light.reference_distance`: found 0"),
-        (
-            "refractive_index = 1.45",
-            "refractive_index = 0.9",
-            "`material.specular`: torrance-sparrow: `refractive_index`",
-        ),
-        ("width_deg = 40", "width = 40", "`camera.projection`: found \"perspective\"; expected `width_deg` beside it"),
-        ("width_deg = 40", "width_deg = 180", "`camera`: the camera sees a width of 180"),
-        ("from = [0, 0, 5]", "from = [0, 0, 0]", "`camera`: the camera looks from where it stands"),
-        ("step = 10", "step = 0.01", "`wavelengths`: wavelengths from 400 to 700 nm in steps of 0.01 nm"),
-        (
-            "observer = 10",
-            "observer = 5",
-            "line 1, column 12, `observer`: invalid value: integer `5`, expected 2 or 10, degrees",
-        ),
-        ("bounces = 3", "bounces = \"many\"", "expected \"all\" or a whole number from 0"),
-        ("samples = 8", "samples = 0", "`film.samples`: found 0; expected 1 to"),
-        ("kept = \"spectra\"", "kept = \"both\"", "unknown variant `both`, expected `colour` or `spectra`"),
-        ("[camera]", "[camera", "line 17"),
-    ];
+    let cases: Vec<Vec<String>> =
+        WRONG.lines().map(|line| line.split(" >> ").map(|part| part.replace("\\n", "\n")).collect()).collect();
+    assert_eq!(cases.len(), 26);
     let mut missed = Vec::new();
-    for (old, new, expected) in cases {
+    for case in &cases {
+        let [old, new, expected] = case.as_slice() else { panic!("{case:?}") };
         let found = wrong(old, new);
-        if !(found.contains(expected) && found.starts_with("scene.toml, line ")) {
+        if !(found.contains(expected.as_str()) && found.starts_with("scene.toml, line ")) {
             missed.push(format!("{new}: found: {found}; expected: {expected}"));
         }
     }

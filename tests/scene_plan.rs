@@ -5,6 +5,8 @@
 mod scans;
 #[path = "common/scenes.rs"]
 mod scenes;
+#[path = "common/units.rs"]
+mod units;
 
 use bbrf::simulate::{
     Ball, Body, Bounces, Camera, Cuboid, Effect, Kept, Layer, Mesh, Picture, Place, Plane, Projection, Rectangle,
@@ -12,6 +14,7 @@ use bbrf::simulate::{
 };
 use scans::Random;
 use scenes::*;
+use units::units;
 
 /// How many random scenes: `BBRF_SCENES` for a long run.
 fn count(usual: usize) -> usize {
@@ -111,15 +114,6 @@ fn random_scene(random: &mut Random) -> Scene {
     scene.seed = (random.uniform() * 1e6) as u64;
     scene.bounces = if random.uniform() < 0.5 { Bounces::All } else { Bounces::Most((random.uniform() * 4.0) as u32) };
     scene
-}
-
-/// Units in the last place.
-fn units(a: f32, b: f32) -> i64 {
-    let ordered = |x: f32| {
-        let bits = i64::from(x.to_bits() & 0x7fff_ffff);
-        if x.is_sign_negative() { -bits } else { bits }
-    };
-    (ordered(a) - ordered(b)).abs()
 }
 
 fn numbers(picture: &Picture) -> impl Iterator<Item = f32> {

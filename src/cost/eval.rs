@@ -114,6 +114,7 @@ fn meaning(asked: &EvalLadder<'_>) -> Meaning {
             names.join(", ")
         ),
         error: format!("largest CIE 1976 colour difference over these lights, {} degree observer", asked.observer),
+        axis: "largest colour difference (CIE 1976)".to_owned(),
         second_error: Some(
             "largest r.m.s. difference of the radiance under a light, both as samples, over its r.m.s.; none where there is \
              no radiance"

@@ -67,6 +67,7 @@ pub fn fit_ladder(
             REFERENCE.tolerance
         ),
         error: "largest distance of a parameter from the reference fit, in its standard uncertainty there".to_owned(),
+        axis: "largest distance of a parameter (standard uncertainty)".to_owned(),
         second_error: Some(
             "chi-square above that of the reference fit, in units of the reference's chi-square per degree of freedom"
                 .to_owned(),

@@ -1,14 +1,28 @@
-//! The ladder of a scene: what a tolerance, and what samples cost.
+//! The ladder of a scene: what tolerances, steps of the wavelength, bounces and samples cost.
 
 use super::ladder::{Ladder, Meaning, Task};
 use super::measured::{Candidate, measured};
 use super::timing::Patience;
-use crate::simulate::{Choice, Kept, Layer, NoPicture, Picture, Scene, Watch, plan};
+use crate::simulate::{Bounces, Choice, Effect, Kept, Layer, NoPicture, Picture, Scene, Watch, plan};
 
 /// CIELAB distances that may be missing.
 const TOLERANCES: [f64; 6] = [0.0, 0.1, 0.3, 1.0, 3.0, 10.0];
+/// Steps of the wavelength, as multiples of the scene's.
+const STEPS: [f64; 3] = [2.0, 4.0, 8.0];
+/// Numbers of bounces.
+const BOUNCES: [u32; 5] = [0, 1, 2, 4, 8];
 /// Parts of the scene's samples.
 const SAMPLES: [u32; 3] = [4, 16, 64];
+
+/// One way to draw a scene.
+struct Way {
+    name: String,
+    knob: &'static str,
+    options: Vec<String>,
+    scene: Scene,
+    choice: Choice,
+    note: Option<String>,
+}
 
 /// What each way of drawing a scene costs. Colours are drawn, whatever the scene keeps.
 ///
@@ -17,28 +31,11 @@ const SAMPLES: [u32; 3] = [4, 16, 64];
 pub fn image_ladder(scene: &Scene, subject: String, patience: Patience) -> Result<Ladder, NoPicture> {
     let everything = Choice::everything(scene.bounces, scene.grid.step());
     let full = drawn(scene, &everything)?;
-    let mut ways =
-        vec![("everything".to_owned(), "plan", vec!["--everything".to_owned()], scene.clone(), everything, None)];
-    for tolerance in TOLERANCES {
-        let found = plan(scene, tolerance)?;
-        let skipped: Vec<&str> =
-            found.effects.iter().filter(|one| !one.simulate).map(|one| one.effect.name()).collect();
-        let note = format!("bound {:.3}; left out: {}", found.bound.delta_e, skipped.join(", "));
-        let options = vec!["--max-delta-e".to_owned(), tolerance.to_string()];
-        ways.push((format!("tolerance {tolerance}"), "plan", options, scene.clone(), found.choice, Some(note)));
-    }
-    if !full.noise.is_empty() {
-        let exact = plan(scene, 0.0)?.choice;
-        for part in SAMPLES.iter().filter(|part| scene.samples / **part > 0) {
-            let samples = scene.samples / part;
-            let options = vec!["--samples".to_owned(), samples.to_string()];
-            let fewer = Scene { samples, ..scene.clone() };
-            ways.push((format!("{samples} samples"), "samples", options, fewer, exact, None));
-        }
-    }
     let mut candidates = Vec::new();
-    for (name, knob, options, scene, choice, note) in ways {
-        let distances = full.lab_distances(&drawn(&scene, &choice)?).unwrap_or_default();
+    for Way { name, knob, options, scene, choice, note } in ways(scene, everything, !full.noise.is_empty())? {
+        // What cannot be drawn so is no rung: in coarse steps a material may seem to send back more than it receives.
+        let Ok(picture) = drawn(&scene, &choice) else { continue };
+        let distances = full.lab_distances(&picture).unwrap_or_default();
         let squares = distances.iter().map(|one| one * one).sum::<f64>();
         candidates.push(Candidate {
             name,
@@ -55,17 +52,71 @@ pub fn image_ladder(scene: &Scene, subject: String, patience: Patience) -> Resul
             read: None,
         });
     }
-    let noise = if full.noise.is_empty() { "" } else { "; its own noise is part of the error of other samples" };
+    let noise =
+        if full.noise.is_empty() { "" } else { "; its own noise is part of the error of other samples and bounces" };
     let meaning = Meaning {
         reference: format!(
             "the scene simulated in full, with the whole product at every pixel, and the same seed and samples{noise}"
         ),
         error: "largest CIELAB distance (1976) of a pixel".to_owned(),
+        axis: "largest colour difference of a pixel (CIE 1976)".to_owned(),
         second_error: Some("root mean square of that distance over the pixels".to_owned()),
         time: "seconds to draw the total in colour on all threads, without planning, PNG and EXR".to_owned(),
         read_time: None,
     };
     Ok(measured(Task::Image, subject, meaning, candidates, patience))
+}
+
+/// In full, by plans, and with less of one thing at a time beside the plan that leaves out nothing.
+fn ways(scene: &Scene, everything: Choice, is_random: bool) -> Result<Vec<Way>, NoPicture> {
+    let exact = plan(scene, 0.0)?.choice;
+    let of = |name: String, knob, options: &[&str], scene: Scene, choice| {
+        let options = options.iter().map(|word| (*word).to_owned()).collect();
+        Way { name, knob, options, scene, choice, note: None }
+    };
+    let mut ways = vec![
+        of("everything".to_owned(), IN_FULL, &["--everything"], scene.clone(), everything),
+        of("plan, product by pixel".to_owned(), IN_FULL, &["--by-pixel"], scene.clone(), exact.by_pixel()),
+    ];
+    for tolerance in TOLERANCES {
+        let found = plan(scene, tolerance)?;
+        let skipped = found.effects.iter().filter(|one| !one.simulate).map(|one| one.effect.name());
+        let note = format!("bound {:.3}; left out: {}", found.bound.delta_e, or_nothing(skipped.collect()));
+        let options = ["--max-delta-e", &tolerance.to_string()];
+        let way = of(format!("tolerance {tolerance}"), "plan", &options, scene.clone(), found.choice);
+        ways.push(Way { note: Some(note), ..way });
+    }
+    for times in STEPS {
+        let step = scene.grid.step() * times;
+        let Ok(grid) = scene.grid.in_steps_of(step) else { continue };
+        let coarser = Scene { grid, ..scene.clone() };
+        let choice = plan(&coarser, 0.0)?.choice;
+        ways.push(of(format!("{step} nm"), "step of the wavelength", &["--step", &step.to_string()], coarser, choice));
+    }
+    let is_fewer = |most: &u32| match scene.bounces {
+        Bounces::All => true,
+        Bounces::Most(all) => *most < all,
+    };
+    for most in BOUNCES.into_iter().filter(|most| exact.has(Effect::Interreflection) && is_fewer(most)) {
+        let fewer = Scene { bounces: Bounces::Most(most), ..scene.clone() };
+        let choice = plan(&fewer, 0.0)?.choice;
+        let name = if most == 1 { "1 bounce".to_owned() } else { format!("{most} bounces") };
+        ways.push(of(name, "bounces", &["--bounces", &most.to_string()], fewer, choice));
+    }
+    for part in SAMPLES.into_iter().filter(|part| is_random && scene.samples / part > 0) {
+        let samples = scene.samples / part;
+        let fewer = Scene { samples, ..scene.clone() };
+        let name = if samples == 1 { "1 sample".to_owned() } else { format!("{samples} samples") };
+        ways.push(of(name, "samples", &["--samples", &samples.to_string()], fewer, exact));
+    }
+    Ok(ways)
+}
+
+/// The knob of what leaves the products to the pixels.
+const IN_FULL: &str = "whole product at every pixel";
+
+fn or_nothing(names: Vec<&str>) -> String {
+    if names.is_empty() { "nothing".to_owned() } else { names.join(", ") }
 }
 
 fn drawn(scene: &Scene, choice: &Choice) -> Result<Picture, NoPicture> {

@@ -27,6 +27,8 @@ pub struct Meaning {
     pub reference: String,
     /// What `error` is.
     pub error: String,
+    /// The same in a few words, for the axis of a figure.
+    pub axis: String,
     /// What `second_error` is, where there is one.
     pub second_error: Option<String>,
     /// What takes `time`.

@@ -2,7 +2,7 @@
 //!
 //! A [`Candidate`] is a setting that a command can be told to use, with its error against a stated reference and the work that
 //! takes the time. [`measured`] has all candidates take turns, and makes a [`Ladder`] of them, of which a [`Wish`] takes a rung. Fits,
-//! predictions and files have ladders of their own here; whoever makes images brings their candidates to [`measured`].
+//! predictions, complete models, images and files have ladders of their own here.
 //!
 //! *May use:* `fit`, `donaldson`, `simulate`, `container`, `dataset`, `quantity`.
 //!
@@ -16,6 +16,7 @@ mod fit;
 mod image;
 mod ladder;
 mod measured;
+mod model;
 #[cfg(feature = "write")]
 mod storage;
 mod timing;
@@ -27,6 +28,7 @@ pub use fit::{fit_ladder, parameter_distance};
 pub use image::image_ladder;
 pub use ladder::{Ladder, Meaning, Rung, Task};
 pub use measured::{Candidate, measured};
+pub use model::{ModelLadder, NoModelLadder, model_ladder};
 #[cfg(feature = "write")]
 pub use storage::{NoStorageLadder, storage_ladder};
 pub use timing::{Patience, Timing, Work, take_turns};

@@ -64,6 +64,7 @@ pub fn storage_ladder(
     let meaning = Meaning {
         reference: format!("the values of the file{without}"),
         error: "largest relative change of a value or of a standard uncertainty after writing and reading".to_owned(),
+        axis: "largest relative change".to_owned(),
         second_error: None,
         time: "seconds to write into memory, digests and the check that it reads back among them".to_owned(),
         read_time: Some("seconds to read from memory, its digests verified".to_owned()),

@@ -43,8 +43,7 @@ impl Reradiation {
         let columns = self.emission_nm.len();
         let irradiance = self.seen(light);
         let elastic: Vec<f64> = self.elastic.iter().zip(&irradiance).map(|(factor, e)| factor * e).collect();
-        let column = |j: usize| shares.iter().enumerate().map(|(i, share)| share * self.density[(i, j)]).sum();
-        let luminescent: Vec<f64> = (0..columns).map(column).collect();
+        let luminescent = self.luminescent(&shares);
         let unit = |j: usize, size: f64| {
             let mut weights = vec![0.0; columns];
             weights[j] = size;
@@ -69,8 +68,14 @@ impl Reradiation {
         }
     }
 
+    /// The luminescence of each emission from the irradiance that each excitation takes part in.
+    pub(super) fn luminescent(&self, shares: &[f64]) -> Vec<f64> {
+        let column = |j: usize| shares.iter().enumerate().map(|(i, share)| share * self.density[(i, j)]).sum();
+        (0..self.emission_nm.len()).map(column).collect()
+    }
+
     /// The light as an instrument of the emission's bandpass sees it, or, where that is unstated, shared out between the centres.
-    fn seen(&self, light: &Light) -> Vec<f64> {
+    pub(super) fn seen(&self, light: &Light) -> Vec<f64> {
         let window = |j: usize| {
             let nm = self.emission_nm[j];
             match &self.emission_fwhm_nm {

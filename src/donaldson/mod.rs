@@ -20,7 +20,7 @@ mod matrix;
 mod nonnegative;
 mod operator;
 mod overlap;
-mod piecewise;
+pub(crate) mod piecewise;
 mod predict;
 mod reradiation;
 mod restore;
@@ -32,7 +32,8 @@ mod unlit;
 pub use balance::{Balance, Share};
 pub use colour::{Colour, Difference, Observer, Whiteness};
 pub use complete::{
-    Bispectral, Complete, Lit, NoComplete, NotAttached, OutsideExcitation, Radiated, Reflected, attach,
+    Bispectral, Complete, CompleteTable, Incident, Lit, NoComplete, NotAttached, OutsideExcitation, Radiated,
+    Reflected, Values, attach,
 };
 pub use consistency::{Consistency, Deviation, Level, ScanOf, Shape};
 pub use factors::Factors;

@@ -88,7 +88,7 @@ pub(super) fn tents(nm: &[f64]) -> Vec<Line> {
 }
 
 /// Where a wavelength lies on an ascending axis: the point below and above, and the part of the way; `None` outside.
-pub(super) fn place(axis: &[f64], nm: f64) -> Option<(usize, usize, f64)> {
+pub(crate) fn place(axis: &[f64], nm: f64) -> Option<(usize, usize, f64)> {
     let last = axis.len().checked_sub(1)?;
     if !(axis[0]..=axis[last]).contains(&nm) {
         return None;

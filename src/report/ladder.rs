@@ -37,21 +37,11 @@ pub fn ladder_figure(ladder: &Ladder) -> Result<Figure, ReportError> {
             ladder.machine
         ),
         x: if is_file { "time to write and to read (s)" } else { "time (s)" }.to_owned(),
-        y: if is_file { "bytes".to_owned() } else { axis_words(ladder.task) },
+        y: if is_file { "bytes".to_owned() } else { ladder.meaning.axis.clone() },
         caption: format!(
             "Error: {}. Reference: {}. Time: {}.",
             ladder.meaning.error, ladder.meaning.reference, ladder.meaning.time
         ),
     };
     draw(&knobs, None, &text)
-}
-
-fn axis_words(task: Task) -> String {
-    match task {
-        Task::Fit => "largest distance of a parameter (standard uncertainty)",
-        Task::Eval => "largest colour difference (CIE 1976)",
-        Task::Image => "error of the image",
-        Task::Storage => "bytes",
-    }
-    .to_owned()
 }

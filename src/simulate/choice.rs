@@ -1,6 +1,7 @@
 //! What is simulated, and how finely.
 
 use super::effect::Effect;
+use super::plan::Plan;
 use super::scene::Bounces;
 
 /// What is simulated of a scene.
@@ -15,6 +16,9 @@ pub struct Choice {
     /// Steps of the wavelength, nm.
     pub(super) step_nm: f64,
 }
+
+/// How the line of a plan begins that [`Plan::by_pixel`] makes wrong.
+const ONCE: &str = "the product of matrix and light is made once";
 
 impl Choice {
     /// Everything, in full.
@@ -67,5 +71,16 @@ impl Choice {
     #[must_use]
     pub fn step_nm(&self) -> f64 {
         self.step_nm
+    }
+}
+
+impl Plan {
+    /// The same with the whole product at every pixel: what it skips stays skipped, and pixels cost what they cost elsewhere.
+    #[must_use]
+    pub fn by_pixel(mut self) -> Self {
+        self.choice = self.choice.by_pixel();
+        self.route.retain(|line| !line.starts_with(ONCE));
+        self.route.insert(0, "the whole product of matrix and direct light at every pixel, as asked".to_owned());
+        self
     }
 }

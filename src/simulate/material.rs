@@ -4,6 +4,7 @@ use ndarray::Array2;
 
 use super::grid::Grid;
 use crate::donaldson::Reradiation;
+use crate::donaldson::piecewise::place;
 use crate::terms::{InvalidParameter, Term, TorranceSparrow};
 
 /// A bispectral surface with an interface.
@@ -82,15 +83,11 @@ impl Material {
     fn luminescence(surface: &Reradiation, grid: &Grid, elastic: Vec<f64>, intensity: Vec<f64>) -> OnGrid {
         let is_dark = surface.density.iter().all(|value| *value == 0.0);
         let luminescence = (!is_dark).then(|| {
-            let place = |axis: &[f64]| grid.nm().iter().map(|nm| inside(axis, *nm)).collect::<Vec<_>>();
-            let (ins, outs, widths) = (place(&surface.excitation_nm), place(&surface.emission_nm), grid.widths());
+            let places = |axis: &[f64]| grid.nm().iter().map(|nm| place(axis, *nm)).collect::<Vec<_>>();
+            let (ins, outs, widths) = (places(&surface.excitation_nm), places(&surface.emission_nm), grid.widths());
             Array2::from_shape_fn((outs.len(), ins.len()), |(j, i)| {
-                let (Some((j, m)), Some((k, x))) = (outs[j], ins[i]) else { return 0.0 };
-                let at = |k: usize| {
-                    (1.0 - m) * surface.density[(k, j)]
-                        + m * surface.density[(k, (j + 1).min(surface.emission_nm.len() - 1))]
-                };
-                let next = (k + 1).min(surface.excitation_nm.len() - 1);
+                let (Some((j, after, m)), Some((k, next, x))) = (outs[j], ins[i]) else { return 0.0 };
+                let at = |k: usize| (1.0 - m) * surface.density[(k, j)] + m * surface.density[(k, after)];
                 widths[i] * ((1.0 - x) * at(k) + x * at(next))
             })
         });
@@ -133,17 +130,4 @@ fn level(points: &[(f64, f64)], nm: f64) -> f64 {
         (None, Some((_, only))) => *only,
         (None, None) => 0.0,
     }
-}
-
-/// Which point a wavelength follows, and how far it is on the way to the next; `None` outside the axis.
-fn inside(axis: &[f64], nm: f64) -> Option<(usize, f64)> {
-    let last = axis.len() - 1;
-    if nm < axis[0] || nm > axis[last] {
-        return None;
-    }
-    let before = axis.partition_point(|at| *at <= nm) - 1;
-    if before == last {
-        return Some((last, 0.0));
-    }
-    Some((before, (nm - axis[before]) / (axis[before + 1] - axis[before])))
 }

@@ -13,7 +13,7 @@ use crate::cli::exit::{CommandResult, Outcome};
 use crate::cli::model_source::{Loaded, ValueMeaning, load};
 use crate::cli::output::{print_json, print_message, print_text};
 use crate::dataset::predict;
-use crate::donaldson::Extend;
+use crate::donaldson::{By, Extend};
 use crate::import::{GeometryRow, read_geometries};
 use crate::quantity::Reference;
 use crate::terms::{Factors, Term, TermKind, TorranceSparrow};
@@ -69,6 +69,16 @@ pub(crate) struct Arguments {
     /// What the light does where it has no value: zero, or flat: it goes on at its first and last
     #[arg(long, default_value = "zero", requires = "light")]
     extend: Extend,
+    /// With `--light`: values alone, without their uncertainties
+    #[arg(long, requires = "light")]
+    values: bool,
+    /// With `--values`: how the light is brought in, integrals (exact) or product (samples of a step times a table);
+    /// `bbrf cost eval --model` measures what that loses
+    #[arg(long, default_value = "integrals", requires = "values")]
+    by: By,
+    /// Step of the samples, nm, from 0.5 to 50
+    #[arg(long, default_value_t = 5.0, value_name = "NM", requires = "values")]
+    step: f64,
     /// Print JSON instead of CSV
     #[arg(long)]
     json: bool,

@@ -145,27 +145,52 @@ impl Directional {
         Ok(Angular { nm: &self.nm, parts: parts.collect::<Result<_, _>>()? })
     }
 
-    fn part(&self, terms: &[Term], covariance: &ParameterCovariance, geometry: &Geometry) -> Result<Part, Undefined> {
-        let is_specular = |kind: TermKind| kind == TermKind::TorranceSparrow;
-        let is_diffuse = |kind: TermKind| self.reflectance == ReflectanceSource::Terms && kind == TermKind::Lambertian;
-        let here = Look { weight: 1.0, geometry: *geometry, reference: Reference::None };
+    /// At one geometry, for all wavelengths, without uncertainties: each of them is [`Part::UNKNOWN`]'s.
+    ///
+    /// # Errors
+    /// [`Undefined`] where a term has no value.
+    pub(super) fn values_at(&self, geometry: &Geometry) -> Result<Angular<'_>, Undefined> {
+        let parts = self.bands.iter().map(|(terms, _)| self.values(terms, geometry));
+        Ok(Angular { nm: &self.nm, parts: parts.collect::<Result<_, _>>()? })
+    }
+
+    fn is_diffuse(&self, kind: TermKind) -> bool {
+        self.reflectance == ReflectanceSource::Terms && kind == TermKind::Lambertian
+    }
+
+    /// Where the matrix was measured, as a look of the terms.
+    fn there(&self) -> Option<Look> {
+        let geometry = self.matrix_geometry?;
+        Some(Look { weight: 1.0, geometry, reference: Reference::SameGeometry })
+    }
+
+    fn values(&self, terms: &[Term], geometry: &Geometry) -> Result<Part, Undefined> {
         let value = |look: &Look, counts: &dyn Fn(TermKind) -> bool| -> Result<f64, Undefined> {
             let counted: Vec<Term> = terms.iter().copied().filter(|term| is_lit(term) && counts(term.kind())).collect();
             Ok(look.weight * predict(&counted, &look.geometry, &look.reference)?.total())
         };
+        let here = Look { weight: 1.0, geometry: *geometry, reference: Reference::None };
+        Ok(Part {
+            specular: value(&here, &is_specular)?,
+            diffuse: value(&here, &|kind| self.is_diffuse(kind))?,
+            in_matrix: self.there().map_or(Ok(0.0), |there| value(&there, &is_specular))?,
+            ..Part::UNKNOWN
+        })
+    }
+
+    fn part(&self, terms: &[Term], covariance: &ParameterCovariance, geometry: &Geometry) -> Result<Part, Undefined> {
+        let is_diffuse = |kind: TermKind| self.is_diffuse(kind);
+        let here = Look { weight: 1.0, geometry: *geometry, reference: Reference::None };
         let sigma = |looks: &[Look], counts: &dyn Fn(TermKind) -> bool| -> Result<(f64, f64), Undefined> {
             let counts = |kind: TermKind| counts(kind) && (kind != TermKind::TorranceSparrow || self.has_specular);
             let known = covariance.of_sum(terms, looks, counts)?;
             Ok((known.standard.unwrap_or(f64::NAN), known.shared_relative.unwrap_or(0.0)))
         };
-        let specular = value(&here, &is_specular)?;
-        let diffuse = value(&here, &is_diffuse)?;
+        let values = self.values(terms, geometry)?;
         let (specular_sigma, _) = sigma(&[here], &is_specular)?;
         let (diffuse_sigma, _) = sigma(&[here], &is_diffuse)?;
-        let (mut in_matrix, mut in_matrix_sigma, mut looks) = (0.0, 0.0, vec![here]);
-        if let Some(geometry_of_matrix) = self.matrix_geometry {
-            let there = Look { weight: 1.0, geometry: geometry_of_matrix, reference: Reference::SameGeometry };
-            in_matrix = value(&there, &is_specular)?;
+        let (mut in_matrix_sigma, mut looks) = (0.0, vec![here]);
+        if let Some(there) = self.there() {
             (in_matrix_sigma, _) = sigma(&[there], &is_specular)?;
             // Where the terms say the reflectance, that of the matrix is not used, whatever is in it.
             if self.reflectance == ReflectanceSource::Matrix {
@@ -173,19 +198,14 @@ impl Directional {
             }
         }
         let (sum_sigma, shared) = sigma(&looks, &|kind| is_specular(kind) || is_diffuse(kind))?;
-        let sum = diffuse + specular + looks.get(1).map_or(0.0, |less| less.weight * in_matrix);
+        let sum = values.diffuse + values.specular + looks.get(1).map_or(0.0, |less| less.weight * values.in_matrix);
         let shared_sigma = (shared * sum).abs();
-        Ok(Part {
-            diffuse,
-            diffuse_sigma,
-            specular,
-            specular_sigma,
-            in_matrix,
-            in_matrix_sigma,
-            sum_sigma,
-            shared_sigma,
-        })
+        Ok(Part { diffuse_sigma, specular_sigma, in_matrix_sigma, sum_sigma, shared_sigma, ..values })
     }
+}
+
+fn is_specular(kind: TermKind) -> bool {
+    kind == TermKind::TorranceSparrow
 }
 
 /// A specular term without intensity.

@@ -3,6 +3,7 @@
 use super::super::predict::Prediction;
 use super::Complete;
 use super::directional::Part;
+use super::values::{Values, lit_share};
 use crate::dataset::ReflectanceSource;
 use crate::quantity::Geometry;
 use crate::terms::Undefined;
@@ -56,42 +57,38 @@ impl<'a> Lit<'a> {
     /// At one geometry.
     #[must_use]
     pub fn at(&self, geometry: &Geometry) -> Radiated {
-        let (prediction, count) = (&self.prediction, self.prediction.emission_nm.len());
-        let cosine = if geometry.is_below_horizon() { 0.0 } else { geometry.incidence.cos_theta().max(0.0) };
-        // Nothing falls in at a right angle: what is not known is nothing, too.
+        let prediction = &self.prediction;
+        let angular = self.model.directional.at(geometry);
+        let values = self.model.valued((&prediction.luminescent, &prediction.irradiance), geometry, &angular);
+        let cosine = lit_share(geometry);
         let lit = |value: f64| if cosine == 0.0 { 0.0 } else { cosine * value };
         let by_terms = self.model.reflectance == ReflectanceSource::Terms;
-        let angular = self.model.directional.at(geometry);
+        let count = prediction.emission_nm.len();
+        let Values { luminescent, diffuse, specular, total, undefined } = values;
         let mut all = Radiated {
-            luminescent: prediction.luminescent.iter().map(|value| lit(*value)).collect(),
+            luminescent,
             luminescent_sigma: prediction.luminescent_sigma.iter().map(|sigma| lit(*sigma)).collect(),
-            diffuse: Vec::with_capacity(count),
+            diffuse,
             diffuse_sigma: Vec::with_capacity(count),
-            specular: Vec::with_capacity(count),
+            specular,
             specular_sigma: Vec::with_capacity(count),
-            total: Vec::with_capacity(count),
+            total,
             total_sigma: Vec::with_capacity(count),
             shared_sigma: Vec::with_capacity(count),
-            undefined: angular.as_ref().err().cloned(),
+            undefined,
         };
         for (j, nm) in prediction.emission_nm.iter().enumerate() {
             let irradiance = prediction.irradiance[j];
             let part = angular.as_ref().map_or(Part::UNKNOWN, |angular| angular.at(*nm));
-            let specular = part.specular * irradiance;
-            let (diffuse, diffuse_sigma) = if by_terms {
-                (part.diffuse * irradiance, part.diffuse_sigma * irradiance)
+            all.diffuse_sigma.push(if by_terms {
+                part.diffuse_sigma * irradiance
             } else {
-                let sigma = prediction.elastic_sigma[j].hypot(part.in_matrix_sigma * irradiance);
-                (lit(prediction.elastic[j] - part.in_matrix * irradiance), lit(sigma))
-            };
+                lit(prediction.elastic_sigma[j].hypot(part.in_matrix_sigma * irradiance))
+            });
             // The two parts of the matrix are known better together.
             let of_matrix = if by_terms { all.luminescent_sigma[j] } else { lit(prediction.total_sigma[j]) };
             let of_scale = if by_terms { all.luminescent[j] } else { lit(prediction.total(j)) };
-            all.diffuse.push(diffuse);
-            all.diffuse_sigma.push(diffuse_sigma);
-            all.specular.push(specular);
             all.specular_sigma.push(part.specular_sigma * irradiance);
-            all.total.push(all.luminescent[j] + diffuse + specular);
             all.total_sigma.push(of_matrix.hypot(part.sum_sigma * irradiance));
             let scale = self.model.shared_relative[j];
             all.shared_sigma.push((scale * of_scale).hypot(part.shared_sigma * irradiance));

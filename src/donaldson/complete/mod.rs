@@ -8,10 +8,12 @@ mod attach;
 mod bispectral;
 mod directional;
 mod lit;
+mod values;
 
 pub use attach::{NotAttached, attach};
 pub use bispectral::{Bispectral, OutsideExcitation, Reflected};
 pub use lit::{Lit, Radiated};
+pub use values::{CompleteTable, Incident, Values};
 
 use self::directional::Directional;
 use super::light::{Extend, Light};

@@ -24,6 +24,7 @@ Examples:
   bbrf cost fit scan.bbrf
   bbrf cost fit scan.bbrf --reduce none --max-error 0.1
   bbrf cost eval postit.bbrf --light D65 --light FL11 --budget 0.5 -o eval.svg
+  bbrf cost eval whole.bbrf --model scan-auto --geometry g.csv --max-error 0.01
   bbrf cost image room.toml --max-error 1
   bbrf cost storage scan.bbrf --max-error 0 --json";
 

@@ -3,6 +3,7 @@
 use miette::miette;
 
 use crate::cli::opened::open;
+use crate::cli::output::print_message;
 use crate::container::measurement_digest;
 use crate::dataset::{Document, Measurement};
 use crate::donaldson::{Matrix, Separate, Separated, restored, separate};
@@ -46,6 +47,14 @@ pub(in crate::cli) fn load(name: &str, rank: Option<usize>) -> Result<Material, 
         None => separate(&matrix, Separate { rank }).map_err(|error| miette!("{name}: {error}"))?,
     };
     Ok(Material { name: name.to_owned(), measurement, matrix, separated, separation })
+}
+
+/// The same, with what the user should know of its separation on standard error.
+pub(in crate::cli) fn load_with_remark(name: &str, rank: Option<usize>) -> Result<Material, miette::Report> {
+    let material = load(name, rank)?;
+    let remark = material.separation.remark.as_ref();
+    remark.iter().for_each(|remark| print_message(&format!("bbrf: warning: {name}: {remark}")));
+    Ok(material)
 }
 
 /// The stored separation, where one can be used, or why it is not.

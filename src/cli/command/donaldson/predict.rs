@@ -85,12 +85,8 @@ pub(crate) fn run(arguments: &Arguments) -> CommandResult {
     let materials = arguments
         .files
         .iter()
-        .map(|name| material::load(name, arguments.rank))
+        .map(|name| material::load_with_remark(name, arguments.rank))
         .collect::<Result<Vec<Material>, miette::Report>>()?;
-    for one in &materials {
-        let remark = one.separation.remark.as_ref();
-        remark.iter().for_each(|remark| print_message(&format!("bbrf: warning: {}: {remark}", one.name)));
-    }
     if arguments.by != By::Integrals {
         return sampled::run(arguments, &materials, &lights);
     }

@@ -9,7 +9,7 @@ use crate::cli::command::donaldson::light_source;
 use crate::cli::exit::{CommandResult, Outcome};
 use crate::cli::model_source::load_complete;
 use crate::cli::output::{print_json, print_message, print_text};
-use crate::donaldson::{Complete, Extend};
+use crate::donaldson::{By, Complete, CompleteTable, Extend, STEPS_NM};
 use crate::import::{GeometryRow, read_geometries};
 pub(crate) use result::EvalCompleteResult;
 
@@ -49,7 +49,20 @@ fn under(
         let level = if arguments.extend == Extend::Flat { "the light goes on flat" } else { "warning" };
         print_message(&format!("bbrf: {level}: {}: {}", arguments.model, unlit.sentence(light)));
     }
-    Ok(EvalCompleteResult::under(complete, &lit, light, geometries))
+    if !arguments.values {
+        return Ok(EvalCompleteResult::under(complete, &lit, light, geometries));
+    }
+    let incident = match arguments.by {
+        By::Integrals => complete.incident(&loaded.light, arguments.extend),
+        By::Product => {
+            let table = CompleteTable::new(complete, arguments.step).ok_or_else(|| {
+                miette!("--step: found {} nm; expected {} to {}", arguments.step, STEPS_NM.0, STEPS_NM.1)
+            })?;
+            table.incident(&table.sampled(&loaded.light, arguments.extend))
+        }
+        other => return Err(miette!("--by: found {other}; expected integrals or product for a model")),
+    };
+    Ok(EvalCompleteResult::values(complete, &lit, &incident, light, geometries))
 }
 
 fn excited(

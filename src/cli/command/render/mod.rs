@@ -14,7 +14,7 @@ use crate::cli::output::{json_text, print_json, print_message, print_text, write
 use crate::cli::overwrite::refuse_overwriting;
 use crate::cli::scene_source;
 use crate::simulate::image::{Depth, Gamut};
-use crate::simulate::{Choice, Kept, Layer};
+use crate::simulate::{Bounces, Choice, Kept, Layer};
 pub(crate) use result::RenderResult;
 
 const EXAMPLES: &str = "\
@@ -54,6 +54,12 @@ pub(crate) struct Arguments {
     /// Samples of each pixel for what has no closed form [default: the scene's]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_048_576))]
     samples: Option<u32>,
+    /// How often light may go from body to body: all, or a number [default: the scene's]
+    #[arg(long, value_name = "N", value_parser = bounces)]
+    bounces: Option<Bounces>,
+    /// Steps of the wavelength, nm [default: the scene's]
+    #[arg(long, value_name = "NM")]
+    step: Option<f64>,
     /// Where random numbers begin [default: the scene's]
     #[arg(long, value_name = "N")]
     seed: Option<u64>,
@@ -68,6 +74,9 @@ pub(crate) struct Arguments {
     /// Simulate everything in full, with the whole product at every pixel: what plans are held against
     #[arg(long, conflicts_with = "max_delta_e")]
     everything: bool,
+    /// Make the whole product of matrix and incident spectrum at every pixel, as renderers without a plan do; skip what the plan skips
+    #[arg(long, conflicts_with = "everything")]
+    by_pixel: bool,
     /// Bits per channel of the PNGs: 8 or 16
     #[arg(long, default_value = "8")]
     depth: Depth,
@@ -76,10 +85,20 @@ pub(crate) struct Arguments {
     json: bool,
 }
 
+fn bounces(text: &str) -> Result<Bounces, String> {
+    let number =
+        || text.parse().map(Bounces::Most).map_err(|_| "expected `all` or a whole number, 0 or more".to_owned());
+    if text == "all" { Ok(Bounces::All) } else { number() }
+}
+
 pub(crate) fn run(arguments: &Arguments) -> CommandResult {
     let mut loaded = scene_source::load(&arguments.scene)?;
     let resolved = &mut loaded.resolved;
     resolved.scene.samples = arguments.samples.unwrap_or(resolved.scene.samples);
+    resolved.scene.bounces = arguments.bounces.unwrap_or(resolved.scene.bounces);
+    if let Some(step) = arguments.step {
+        resolved.scene.grid = resolved.scene.grid.in_steps_of(step).map_err(|error| miette!("--step: {error}"))?;
+    }
     resolved.scene.seed = arguments.seed.unwrap_or(resolved.scene.seed);
     if arguments.spectra {
         resolved.kept = Kept::Spectra;
@@ -92,7 +111,10 @@ pub(crate) fn run(arguments: &Arguments) -> CommandResult {
     let resolved = &loaded.resolved;
     let plan = match arguments.everything {
         true => None,
-        false => Some(arguments.tolerance.plan(&resolved.scene)?),
+        false => {
+            let plan = arguments.tolerance.plan(&resolved.scene)?;
+            Some(if arguments.by_pixel { plan.by_pixel() } else { plan })
+        }
     };
     let choice = match &plan {
         Some(plan) => plan.choice,

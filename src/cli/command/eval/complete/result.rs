@@ -4,7 +4,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::dataset::ReflectanceSource;
-use crate::donaldson::{Bispectral, Complete, Lit, OutsideExcitation, Radiated};
+use crate::donaldson::{Bispectral, Complete, Incident, Lit, OutsideExcitation, Radiated, Values};
 use crate::import::GeometryRow;
 use crate::quantity::{Geometry, QuantityKind};
 
@@ -40,23 +40,28 @@ struct UnderResult {
     rows: Vec<UnderRow>,
 }
 
-/// One geometry under a light; lists have one number per emission.
+/// One geometry under a light; lists have one number per emission. Without uncertainties where `--values` asks for none.
 #[derive(Debug, Serialize, JsonSchema)]
 struct UnderRow {
     #[serde(flatten)]
     angles: Angles,
     luminescent: Vec<Option<f64>>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     luminescent_standard_uncertainty: Vec<Option<f64>>,
     /// Reflected diffusely.
     diffuse: Vec<Option<f64>>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     diffuse_standard_uncertainty: Vec<Option<f64>>,
     /// Reflected at the interface.
     specular: Vec<Option<f64>>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     specular_standard_uncertainty: Vec<Option<f64>>,
     /// The three together.
     total: Vec<Option<f64>>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     total_standard_uncertainty: Vec<Option<f64>>,
     /// Standard uncertainty of the total that its values share (scales of matrix and scan); not contained in the other.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     total_shared_standard_uncertainty: Vec<Option<f64>>,
     /// Why the specular part has no value.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -149,6 +154,25 @@ impl EvalCompleteResult {
         Self { under: Some(under), ..Self::empty(complete) }
     }
 
+    /// The same without uncertainties, the light being brought in by any way.
+    pub(super) fn values(
+        complete: &Complete,
+        lit: &Lit<'_>,
+        incident: &Incident,
+        light: &str,
+        geometries: &[GeometryRow],
+    ) -> Self {
+        let mut result = Self::under(complete, lit, light, &[]);
+        if let Some(under) = &mut result.under {
+            under.irradiance.clone_from(&incident.irradiance);
+            let row = |(row, one): (usize, &GeometryRow)| {
+                value_row(Angles::of(row, &one.geometry), complete.values(incident, &one.geometry))
+            };
+            under.rows = geometries.iter().enumerate().map(row).collect();
+        }
+        result
+    }
+
     /// At excitations.
     pub(super) fn excited(
         complete: &Complete,
@@ -182,16 +206,26 @@ impl EvalCompleteResult {
         let mut header =
             if signed { "theta_i_deg,theta_v_deg" } else { "theta_i_deg,phi_i_deg,theta_v_deg,phi_v_deg" }.to_owned();
         header.push_str(if self.under.is_some() { ",emission_nm" } else { ",excitation_nm,emission_nm,unit" });
+        let has_values_alone =
+            self.under.iter().flat_map(|under| &under.rows).any(|row| row.total_standard_uncertainty.is_empty());
         for part in ["luminescent", "diffuse", "specular", "total"] {
-            header.push_str(&format!(",{part},{part}_standard_uncertainty"));
+            header.push_str(&format!(",{part}"));
+            if !has_values_alone {
+                header.push_str(&format!(",{part}_standard_uncertainty"));
+            }
         }
-        if self.under.is_some() {
+        if self.under.is_some() && !has_values_alone {
             header.push_str(",total_shared_standard_uncertainty");
         }
         let mut lines = vec![header];
         for row in self.under.iter().flat_map(|under| &under.rows) {
             let start = angle_columns(&row.angles, geometries);
             for (j, nm) in self.emission_nm.iter().enumerate() {
+                if has_values_alone {
+                    let values = [row.luminescent[j], row.diffuse[j], row.specular[j], row.total[j]];
+                    lines.push(format!("{start},{nm},{}", fields(&values)));
+                    continue;
+                }
                 let values = [
                     row.luminescent[j],
                     row.luminescent_standard_uncertainty[j],
@@ -257,6 +291,22 @@ fn under_row(angles: Angles, radiated: Radiated) -> UnderRow {
         total_standard_uncertainty: list(radiated.total_sigma),
         total_shared_standard_uncertainty: list(radiated.shared_sigma),
         undefined: radiated.undefined.map(|why| why.to_string()),
+    }
+}
+
+fn value_row(angles: Angles, values: Values) -> UnderRow {
+    UnderRow {
+        angles,
+        luminescent: list(values.luminescent),
+        luminescent_standard_uncertainty: Vec::new(),
+        diffuse: list(values.diffuse),
+        diffuse_standard_uncertainty: Vec::new(),
+        specular: list(values.specular),
+        specular_standard_uncertainty: Vec::new(),
+        total: list(values.total),
+        total_standard_uncertainty: Vec::new(),
+        total_shared_standard_uncertainty: Vec::new(),
+        undefined: values.undefined.map(|why| why.to_string()),
     }
 }
 
