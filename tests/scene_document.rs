@@ -326,7 +326,7 @@ fn no_mutation_of_a_scene_ends_the_program() {
     ];
     let mut draw = numbers(7);
     let (mut scenes, mut errors, mut drawn) = (0, 0, 0);
-    for _ in 0..6000 {
+    for _ in 0..2000 {
         let mut lines: Vec<String> = small.lines().map(str::to_owned).collect();
         for _ in 0..=draw(2) {
             let at = draw(lines.len());
@@ -378,7 +378,7 @@ fn no_mutation_of_a_scene_ends_the_program() {
         }
     }
     println!("{scenes} scenes, {drawn} of them drawn, {errors} errors");
-    assert!(scenes > 500 && drawn > 300 && errors > 1000, "{scenes} {drawn} {errors}");
+    assert!(scenes > 100 && drawn > 100 && errors > 1000, "{scenes} {drawn} {errors}");
 }
 
 #[test]

@@ -104,7 +104,8 @@ fn a_pixel_of_a_complete_model_is_what_eval_says_of_its_geometry() {
             for (layer, spectrum) in pixel(folder.path(), &scene) {
                 let Some(expected) = said["under"]["rows"][row][&layer].as_array() else { continue };
                 let peak = expected.iter().map(|x| x.as_f64().unwrap()).fold(0.0, f64::max);
-                for (nm, expected) in nm.iter().zip(expected) {
+                // At the first emission `eval` sees half a cell of the light, the half that the matrix has; the scene has both.
+                for (nm, expected) in nm.iter().zip(expected).skip(1) {
                     let found = spectrum.iter().find(|(at, _)| at == nm).unwrap().1;
                     let error = (found - expected.as_f64().unwrap()).abs() / peak;
                     if error > worst {
