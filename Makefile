@@ -80,7 +80,7 @@ $(VENV)/soak-ready: $(VENV)/ready tests/python/soak.txt
 	$(VENV)/bin/python -m pip install --quiet --disable-pip-version-check -r tests/python/soak.txt
 	touch $@
 
-soak: soak-damage fuzz-check $(VENV)/soak-ready ## Long runs: ten thousand cases of every property, two thousand scans, a million points against 60 digits, and the two below.
+soak: soak-damage fuzz-check $(VENV)/soak-ready ## Long runs: ten thousand cases of every property, two thousand scans, a million points against 60 digits, scenes against Mitsuba 3, and the two below.
 	BBRF_PROPTEST_CASES=10000 BBRF_TRIALS=2000 BBRF_POINTS=1000000 BBRF_PYTHON=$(VENV)/bin/python $(CARGO) test --locked --release
 
 # Unoptimised, where arithmetic that overflows is a panic; in 4 GiB of memory, where what asks for more is refused.

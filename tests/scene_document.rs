@@ -261,3 +261,138 @@ fn no_text_ends_the_program() {
     let deep = format!("a = {}{}", "[".repeat(10_000), "]".repeat(10_000));
     assert!(resolve(&deep).is_err());
 }
+
+/// Numbers that mean nothing, the same for every run.
+fn numbers(mut state: u64) -> impl FnMut(usize) -> usize {
+    move |below| {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 33) as usize % below
+    }
+}
+
+/// What differs from a scene by a word, a line or a letter is a scene or an error with its place; small ones are drawn as well.
+#[test]
+fn no_mutation_of_a_scene_ends_the_program() {
+    let small = WHOLE.replace("bounces = 3", "bounces = 1").replace("samples = 8", "samples = 1");
+    let words = [
+        "0",
+        "-1",
+        "1e8",
+        "nan",
+        "-0.0",
+        "1e-300",
+        "[]",
+        "[0, 0, 0]",
+        "\"\"",
+        "true",
+        "{}",
+        "\n",
+        "=",
+        "[[light]]\n",
+        "[film]\n",
+        "5e8",
+        "18446744073709551615",
+        "\u{e9}",
+        "\"grey\"",
+        "# ",
+        "\"\"\"",
+        "0x7fffffffffffffff",
+        "1979-05-27",
+        "surround = true\n",
+    ];
+    let mut draw = numbers(7);
+    let (mut scenes, mut errors, mut drawn) = (0, 0, 0);
+    for _ in 0..2000 {
+        let mut lines: Vec<String> = small.lines().map(str::to_owned).collect();
+        for _ in 0..=draw(2) {
+            let at = draw(lines.len());
+            match draw(6) {
+                0 => drop(lines.remove(at)),
+                1 => lines.insert(draw(at + 1), lines[at].clone()),
+                // Another value.
+                2 | 3 => {
+                    let key = lines[at].split('=').next().unwrap_or_default().to_owned();
+                    lines[at] = format!("{key}= {}", words[draw(words.len())]);
+                }
+                // Another number in a list or a table.
+                4 => {
+                    let parts: Vec<&str> = lines[at].split(' ').collect();
+                    let place = draw(parts.len());
+                    let mut parts: Vec<&str> = parts;
+                    parts[place] = words[draw(words.len())];
+                    lines[at] = parts.join(" ");
+                }
+                _ => {
+                    let mut letters: Vec<char> = lines[at].chars().collect();
+                    let place = draw(letters.len() + 1);
+                    letters.insert(place, char::from_u32(draw(0x300) as u32).unwrap_or(' '));
+                    lines[at] = letters.into_iter().collect();
+                }
+            }
+        }
+        let text = lines.join("\n") + "\n";
+        match resolve(&text) {
+            Ok(found) => {
+                scenes += 1;
+                let scene = &found.scene;
+                let paths = scene.size.0 * scene.size.1 * scene.samples as usize;
+                if paths <= 64 && scene.grid.nm().len() <= 100 && scene.bounces != Bounces::All {
+                    drawn += 1;
+                    let choice = bbrf::simulate::Choice::everything(Bounces::Most(1), scene.grid.step());
+                    let watch = bbrf::simulate::Watch::default();
+                    let layers = &[bbrf::simulate::Layer::Total];
+                    if let Err(why) = bbrf::simulate::Picture::draw(scene, &choice, found.kept, layers, &watch) {
+                        assert!(why.to_string().contains("expected"), "{why}");
+                    }
+                }
+            }
+            Err(error) => {
+                errors += 1;
+                assert!(error.line >= 1 && error.line <= text.lines().count() + 1, "{error}");
+                assert!(!error.problem.is_empty(), "{error}");
+            }
+        }
+    }
+    println!("{scenes} scenes, {drawn} of them drawn, {errors} errors");
+    assert!(scenes > 100 && drawn > 100 && errors > 1000, "{scenes} {drawn} {errors}");
+}
+
+#[test]
+fn lights_of_different_units_need_a_strength_that_brings_them_together() {
+    struct Measured;
+    impl Library for Measured {
+        fn material(&mut self, source: &Source<'_>) -> Result<(Material, Vec<String>), String> {
+            Shelf.material(source)
+        }
+
+        fn reflectance(&mut self, file: &str) -> Result<(Points, Vec<String>), String> {
+            Shelf.reflectance(file)
+        }
+
+        fn light(&mut self, name: &str) -> Result<(Light, Vec<String>), String> {
+            use bbrf::quantity::QuantityKind::{RelativeSpectrum, SpectralIrradiance, SpectralRadiance};
+            let kind = match name {
+                "A" => SpectralIrradiance,
+                "E" => SpectralRadiance,
+                _ => RelativeSpectrum,
+            };
+            Ok((Light::new(name, kind, vec![300.0, 780.0], vec![1.0, 1.0], None).unwrap(), Vec::new()))
+        }
+
+        fn mesh(&mut self, file: &str) -> Result<(Corners, Vec<String>), String> {
+            Shelf.mesh(file)
+        }
+    }
+    let resolve = |text: &str| SceneDocument::resolve("scene.toml", text, &mut Measured);
+    // The first says its strength; of the other two one has to.
+    let error = resolve(WHOLE).unwrap_err().to_string();
+    assert_eq!(
+        error,
+        "scene.toml, line 45, column 1, `light.spectrum`: found a light in W m-2 sr-1 nm-1, and light `light 2` in W m-2 nm-1; \
+         expected one unit, or a `strength` beside one of them that brings both together (1 if they are so already)"
+    );
+    let stated = WHOLE.replace("surround = true", "surround = true\nstrength = 1");
+    assert_eq!(resolve(&stated).unwrap().scene.sources.len(), 3);
+    // Of one unit they are added as they are.
+    assert!(resolve(&WHOLE.replace("spectrum = \"E\"", "spectrum = \"A\"")).is_ok());
+}

@@ -4,13 +4,10 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use super::vector::{Vector, across, along, dot, minus, plus, scaled};
 use crate::quantity::HalfAngles;
-use crate::terms::{Denominator, Distribution, Lobe, TorranceSparrow, fresnel};
+use crate::terms::{Denominator, Distribution, HalfSpace, Lobe, TorranceSparrow, fresnel};
 
 /// Angles of viewing that the light from all around is tabulated at.
 const VIEWS: usize = 65;
-/// Points of the sum over the half vectors, in polar angle and over half a turn.
-const POLARS: usize = 64;
-const AZIMUTHS: usize = 32;
 
 /// An interface, with what depends on its parameters alone. Its intensity is left to the spectra.
 #[derive(Debug, Clone)]
@@ -149,30 +146,38 @@ impl Interface {
     /// What the interface sends of light from all around, over that which a perfect diffuser does, at cosines of viewing from 0 to 1.
     pub(super) fn surrounded(&self) -> Vec<f64> {
         let normal = [0.0, 0.0, 1.0];
-        let mean = |cosine: f64| {
-            let view = [(1.0 - cosine * cosine).max(0.0).sqrt(), 0.0, cosine];
-            let mut sum = 0.0;
-            for polar in 0..POLARS {
-                for azimuth in 0..AZIMUTHS {
-                    // Half a turn stands for the other: the angle from the plane of viewing, not from that of `across`.
-                    let turn = (azimuth as f64 + 0.5) / (2.0 * AZIMUTHS as f64);
-                    sum += self
-                        .draw(normal, view, [(polar as f64 + 0.5) / POLARS as f64, turn])
-                        .map_or(0.0, |drawn| drawn.1);
-                }
+        let sum = |cosine: f64| {
+            let sine = (1.0 - cosine * cosine).max(0.0).sqrt();
+            let (view, mut sum) = ([sine, 0.0, cosine], 0.0);
+            let lights = HalfSpace::new(sine, cosine, self.half_width());
+            let done: Result<(), std::convert::Infallible> = lights.each_direction(|light, solid_angle| {
+                let value = self.value(normal, light, view);
+                sum += if value.is_finite() { value * solid_angle } else { 0.0 };
+                Ok(())
+            });
+            match done {
+                Ok(()) => sum / PI,
             }
-            sum / (POLARS * AZIMUTHS) as f64
         };
-        (0..VIEWS).map(|k| mean((k as f64 / (VIEWS - 1) as f64).max(1e-6))).collect()
+        (0..VIEWS).map(|k| sum((k as f64 / (VIEWS - 1) as f64).max(1e-6))).collect()
     }
 }
 
-/// A table of [`Interface::surrounded`] at a cosine.
+/// A table of [`Interface::surrounded`] at a cosine: the cubic through four of its points, straight where the term may end at no
+/// number as the view grazes.
 pub(super) fn at(table: &[f64], cosine: f64) -> f64 {
     let place = cosine.clamp(0.0, 1.0) * (table.len() - 1) as f64;
     let before = (place as usize).min(table.len() - 2);
     let part = place - before as f64;
-    (1.0 - part) * table[before] + part * table[before + 1]
+    if before < 2 {
+        return (1.0 - part) * table[before] + part * table[before + 1];
+    }
+    let first = (before - 1).min(table.len() - 4);
+    let x = place - first as f64;
+    let share = |k: usize| {
+        (0..4).filter(|other| *other != k).map(|other| (x - other as f64) / (k as f64 - other as f64)).product::<f64>()
+    };
+    (0..4).map(|k| share(k) * table[first + k]).sum::<f64>().max(0.0)
 }
 
 impl Spread {

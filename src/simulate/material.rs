@@ -98,26 +98,34 @@ impl Material {
 impl OnGrid {
     /// The largest share of the energy of a wavelength that leaves again by diffuse reflection and luminescence.
     pub(super) fn albedo(&self, grid: &Grid) -> f64 {
-        let widths = grid.widths();
-        let column = |i: usize| {
-            let emitted = self.luminescence.as_ref().map_or(0.0, |matrix| {
-                matrix.column(i).iter().zip(&widths).map(|(value, width)| value * width).sum::<f64>() / widths[i]
-            });
-            self.elastic[i] + emitted
-        };
-        (0..self.elastic.len()).map(column).fold(0.0, f64::max)
+        self.sent_back(grid, |_, _| 1.0).fold(0.0, f64::max)
     }
 
-    /// The largest share of the photons of a wavelength that leaves again as luminescence.
-    pub(super) fn yielded(&self, grid: &Grid) -> f64 {
+    /// The share of the energy of each wavelength that leaves again, `interface` being that of an interface of intensity 1.
+    pub(super) fn energy(&self, grid: &Grid, interface: f64) -> f64 {
+        self.with_interface(self.sent_back(grid, |_, _| 1.0), interface)
+    }
+
+    /// The same of its photons: those that are reflected were not absorbed, and cannot be emitted as well.
+    pub(super) fn photons(&self, grid: &Grid, interface: f64) -> f64 {
+        self.with_interface(self.sent_back(grid, |out, into| out / into), interface)
+    }
+
+    fn with_interface(&self, shares: impl Iterator<Item = f64>, interface: f64) -> f64 {
+        shares.zip(&self.intensity).map(|(share, intensity)| share + intensity * interface).fold(0.0, f64::max)
+    }
+
+    /// Of each wavelength what leaves again by diffuse reflection and luminescence, where energy of one wavelength counts so much
+    /// more than that of another.
+    fn sent_back<'a>(&'a self, grid: &'a Grid, worth: impl Fn(f64, f64) -> f64 + 'a) -> impl Iterator<Item = f64> + 'a {
         let (widths, nm) = (grid.widths(), grid.nm());
-        let Some(matrix) = &self.luminescence else { return 0.0 };
-        let column = |i: usize| {
-            let photons =
-                matrix.column(i).into_iter().zip(&widths).zip(nm).map(|((value, width), out)| value * width * out);
-            photons.sum::<f64>() / (widths[i] * nm[i])
-        };
-        (0..nm.len()).map(column).fold(0.0, f64::max)
+        (0..nm.len()).map(move |i| {
+            let emitted = self.luminescence.as_ref().map_or(0.0, |matrix| {
+                let column = matrix.column(i).into_iter().zip(&widths).zip(nm);
+                column.map(|((value, width), out)| value * width * worth(*out, nm[i])).sum::<f64>() / widths[i]
+            });
+            self.elastic[i] + emitted
+        })
     }
 }
 

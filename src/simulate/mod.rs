@@ -15,6 +15,8 @@ pub mod convex;
 mod distance;
 pub mod document;
 mod effect;
+#[cfg(test)]
+mod energy;
 mod film;
 mod grid;
 pub mod image;

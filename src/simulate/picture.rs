@@ -224,9 +224,10 @@ fn may_bounce(scene: &Scene, choice: &Choice, prepared: &Prepared) -> Result<(),
     }
     for body in &scene.bodies {
         let (material, on_grid) = (&scene.materials[body.material], &prepared.materials[body.material]);
+        let interface = interface_albedo(material);
         let shares = [
-            (on_grid.albedo(&prepared.grid) + interface_albedo(material, on_grid), "the energy of a wavelength"),
-            (on_grid.yielded(&prepared.grid), "the photons of a wavelength"),
+            (on_grid.energy(&prepared.grid, interface), "the energy of a wavelength"),
+            (on_grid.photons(&prepared.grid, interface), "the photons of a wavelength"),
         ];
         if let Some((albedo, what)) = shares.into_iter().find(|(albedo, _)| *albedo > 1.0 + 1e-9) {
             return Err(NotDrawn::Brighter { material: material.name.clone(), albedo, what });
@@ -235,14 +236,14 @@ fn may_bounce(scene: &Scene, choice: &Choice, prepared: &Prepared) -> Result<(),
     Ok(())
 }
 
-/// The largest directional albedo of the interface up to 80 degrees: with the paper's denominator that beyond has no bound.
-fn interface_albedo(material: &super::material::Material, on_grid: &OnGrid) -> f64 {
+/// The largest directional albedo of an interface of intensity 1 up to 80 degrees: with the paper's denominator that beyond has no
+/// bound.
+fn interface_albedo(material: &super::material::Material) -> f64 {
     let Some(term) = material.specular else { return 0.0 };
-    let most = on_grid.intensity.iter().copied().fold(0.0, f64::max);
     let term = crate::terms::Term::TorranceSparrow(crate::terms::TorranceSparrow { intensity: 1.0, ..term });
     let at = |theta: f64| {
         let direction = crate::quantity::Direction::from_degrees(theta, 0.0).ok()?;
         term.directional_albedo(&direction).ok().map(|found| found.value)
     };
-    most * [0.0, 15.0, 30.0, 45.0, 60.0, 70.0, 80.0].into_iter().filter_map(at).fold(0.0, f64::max)
+    [0.0, 15.0, 30.0, 45.0, 60.0, 70.0, 80.0].into_iter().filter_map(at).fold(0.0, f64::max)
 }

@@ -39,9 +39,15 @@ impl Term {
         if !(NARROWEST..).contains(&width) {
             return Err(Undefined::NotFinite);
         }
-        let lobe = HalfSpace { tangent: incidence.sin_theta() / incidence.cos_theta(), width, incidence };
+        let lobe = HalfSpace::new(incidence.sin_theta(), incidence.cos_theta(), width);
         let mut sum = [0.0; 4];
-        lobe.each_direction(|viewing, weight| {
+        lobe.each_direction(|[x, y, z], solid_angle| {
+            // Rounding may lift the last points over the edge, where nothing is radiated.
+            let theta = x.hypot(y).atan2(z).to_degrees();
+            let Ok(viewing) = Direction::from_degrees(theta, y.atan2(x).to_degrees().rem_euclid(360.0) % 360.0) else {
+                return Ok::<(), Undefined>(());
+            };
+            let weight = solid_angle * viewing.cos_theta().max(0.0) / PI;
             let geometry = Geometry { incidence: lit_from(incidence), viewing };
             let at = self.evaluate(&geometry, &Reference::SameGeometry)?;
             for (total, part) in sum.iter_mut().zip([at.value, at.by[0], at.by[1], at.by[2]]) {
@@ -59,19 +65,26 @@ fn lit_from(incidence: &Direction) -> Direction {
     Direction::from_degrees(incidence.theta_deg(), 0.0).unwrap_or(*incidence)
 }
 
-/// The half vectors that belong to one direction of incidence.
-struct HalfSpace<'a> {
+/// The half vectors that belong to one direction, and with them all others: of viewing for light from it, of light for a view from
+/// it.
+pub(crate) struct HalfSpace {
+    sine: f64,
+    cosine: f64,
     tangent: f64,
     width: f64,
-    incidence: &'a Direction,
 }
 
-impl HalfSpace<'_> {
+impl HalfSpace {
+    /// Of a direction at phi = 0 with this sine and cosine (above 0) of theta, for a lobe of this half width, rad.
+    pub(crate) fn new(sine: f64, cosine: f64, width: f64) -> Self {
+        Self { sine, cosine, tangent: sine / cosine, width }
+    }
+
     /// Azimuths in [0, pi] between which the lines of polar angles keep their order; one half stands for both.
     fn azimuths(&self) -> Vec<f64> {
         let crossing = |tangent: f64| (tangent <= self.tangent).then(|| (tangent / self.tangent).acos());
         // At grazing incidence delta turns fast near pi/2; pieces that halve follow it.
-        let turns = [1.0, 4.0, 16.0, 64.0].into_iter().filter_map(crossing);
+        let turns = [1.0, 4.0, 16.0, 64.0, 256.0, 1024.0].into_iter().filter_map(crossing);
         let ahead: Vec<f64> = turns.chain(crossing(FRAC_PI_6.tan())).collect();
         let behind: Vec<f64> = ahead.iter().map(|azimuth| PI - azimuth).collect();
         ordered([0.0, FRAC_PI_2, PI].into_iter().chain(ahead).chain(behind), PI)
@@ -85,23 +98,16 @@ impl HalfSpace<'_> {
         ordered(edges.into_iter().chain(doubling.take_while(|width| *width < last)), last)
     }
 
-    /// Calls with every viewing direction of the rule and its share of the integral.
-    fn each_direction(&self, mut visit: impl FnMut(Direction, f64) -> Result<(), Undefined>) -> Result<(), Undefined> {
-        let (sin_i, cos_i) = (self.incidence.sin_theta(), self.incidence.cos_theta());
+    /// Calls with every direction of the rule, of length 1 and the normal along z, and its solid angle.
+    pub(crate) fn each_direction<E>(&self, mut visit: impl FnMut([f64; 3], f64) -> Result<(), E>) -> Result<(), E> {
         for (alpha, alpha_weight) in gauss::<AZIMUTHS>(&self.azimuths()) {
             let delta = (self.tangent * alpha.cos()).atan();
             for (phi, phi_weight) in gauss::<POLARS>(&self.polars(delta)) {
                 let half = [phi.sin() * alpha.cos(), phi.sin() * alpha.sin(), phi.cos()];
-                let along = sin_i * half[0] + cos_i * half[2];
-                let [x, y, z] = [0, 1, 2].map(|k| 2.0 * along * half[k] - [sin_i, 0.0, cos_i][k]);
-                let theta = x.hypot(y).atan2(z).to_degrees();
-                // Rounding may lift the last points over the edge, where nothing is radiated.
-                let Ok(viewing) = Direction::from_degrees(theta, y.atan2(x).to_degrees().rem_euclid(360.0) % 360.0)
-                else {
-                    continue;
-                };
-                let solid_angle = 4.0 * along * phi.sin() * phi_weight * alpha_weight;
-                visit(viewing, 2.0 * solid_angle * viewing.cos_theta().max(0.0) / PI)?;
+                let along = self.sine * half[0] + self.cosine * half[2];
+                let other = [0, 1, 2].map(|k| 2.0 * along * half[k] - [self.sine, 0.0, self.cosine][k]);
+                // One half of the azimuths stands for both.
+                visit(other, 2.0 * (4.0 * along * phi.sin() * phi_weight * alpha_weight))?;
             }
         }
         Ok(())

@@ -9,7 +9,7 @@ use crate::dataset::{Document, Model};
 use crate::donaldson::{Complete, Luminescence, Reradiation};
 use crate::quantity::{Basis, Part};
 use crate::simulate::Material;
-use crate::simulate::document::Points;
+use crate::simulate::document::{Points, Source};
 use crate::terms::{Term, TermKind, TorranceSparrow};
 
 type Found = Result<(Material, Vec<String>), miette::Report>;
@@ -20,23 +20,25 @@ const ALL_NM: [f64; 2] = [200.0, 1100.0];
 /// The terms of the interface at each wavelength, nm, or in one band.
 type Bands = Vec<(Option<f64>, Vec<TorranceSparrow>)>;
 
-pub(super) fn load(path: &str, model: Option<&str>, matrix: Option<&str>) -> Found {
-    if let Some(id) = matrix {
+/// `path` is the file of `source` as it can be opened from here.
+pub(super) fn load(path: &str, source: &Source<'_>) -> Found {
+    if let Some(id) = source.matrix {
         return of_matrix(&format!("{path}#{id}"));
     }
     let document = open(path.as_ref())?.document;
     let ids = || document.models.iter().map(|model| model.id.to_string()).collect::<Vec<_>>().join(", ");
-    match (model, document.models.as_slice()) {
+    match (source.model, document.models.as_slice()) {
         (Some(id), _) => {
             let model = document.model(id);
             of_model(
                 path,
+                source,
                 &document,
                 model
                     .ok_or_else(|| miette!("{path}: no model `{id}`; the file holds: {}", matrices::or_none(ids())))?,
             )
         }
-        (None, [one]) => of_model(path, &document, one),
+        (None, [one]) => of_model(path, source, &document, one),
         (None, []) => of_matrix(path),
         (None, _) => Err(miette!("{path}: holds several models ({}); name one with `model = \"ID\"`", ids())),
     }
@@ -54,12 +56,12 @@ fn of_matrix(name: &str) -> Found {
     Ok((Material { name: String::new(), surface, specular: None, intensity: Vec::new() }, remarks))
 }
 
-fn of_model(path: &str, document: &Document, model: &Model) -> Found {
+fn of_model(path: &str, source: &Source<'_>, document: &Document, model: &Model) -> Found {
     let id = &model.id;
     if model.donaldson.is_some() {
         let complete = Complete::of(document, model).map_err(|error| miette!("{path}: {error}"))?;
         let (specular, intensity) =
-            one_interface(&complete.interface()).map_err(|why| refused(path, id.as_str(), &why))?;
+            one_interface(source, &complete.interface()).map_err(|why| refused(path, id.as_str(), &why))?;
         let remarks = complete.findings().to_vec();
         return Ok((Material { name: String::new(), surface: complete.lambertian(), specular, intensity }, remarks));
     }
@@ -91,7 +93,7 @@ fn of_model(path: &str, document: &Document, model: &Model) -> Found {
             terms.iter().filter_map(|term| if let Term::TorranceSparrow(one) = term { Some(*one) } else { None });
         bands.push((nm.map(|nm| nm[emission]), interface.filter(|one| one.intensity != 0.0).collect()));
     }
-    let (specular, intensity) = one_interface(&bands).map_err(|why| refused(path, id.as_str(), &why))?;
+    let (specular, intensity) = one_interface(source, &bands).map_err(|why| refused(path, id.as_str(), &why))?;
     let nm = match (nm, albedo.as_slice()) {
         (Some(nm), [_, _, ..]) => nm.to_vec(),
         (_, [one]) => {
@@ -121,8 +123,11 @@ fn refused(path: &str, id: &str, why: &str) -> miette::Report {
     )
 }
 
-/// The one term of all wavelengths, and its intensity at each.
-fn one_interface(bands: &Bands) -> Result<(Option<TorranceSparrow>, Points), String> {
+/// The one term of all wavelengths, and its intensity at each; nothing where the scene states its own.
+fn one_interface(source: &Source<'_>, bands: &Bands) -> Result<(Option<TorranceSparrow>, Points), String> {
+    if source.has_interface {
+        return Ok((None, Vec::new()));
+    }
     if let Some((_, several)) = bands.iter().find(|(_, terms)| terms.len() > 1) {
         return Err(format!("found {} specular terms", several.len()));
     }

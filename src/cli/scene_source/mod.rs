@@ -73,7 +73,7 @@ fn sentence(report: &miette::Report) -> String {
 impl Library for Files {
     fn material(&mut self, source: &Source<'_>) -> Result<(Material, Vec<String>), String> {
         let path = self.beside(source.file)?;
-        material::load(&path, source.model, source.matrix).map_err(|report| sentence(&report))
+        material::load(&path, source).map_err(|report| sentence(&report))
     }
 
     fn reflectance(&mut self, file: &str) -> Result<(Points, Vec<String>), String> {

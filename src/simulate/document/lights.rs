@@ -4,8 +4,9 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::description::one;
-use super::place::{NotAScene, Step};
+use super::place::{NotAScene, Places, Step};
 use super::resolve::Resolver;
+use crate::quantity::QuantityKind;
 use crate::simulate::source::{Place, Source};
 use crate::simulate::vector::unit;
 
@@ -79,4 +80,26 @@ impl LightSection {
         let light = if strength == 1.0 { light } else { light.scaled(strength) };
         Ok(Source { name, light, place })
     }
+}
+
+/// Numbers of different units have no sum: where lights differ, their author says by `strength` what one is beside the other. A 1
+/// that is written is such a word, one that is left out is none.
+pub(super) fn check_units(sources: &[Source], places: &Places<'_>) -> Result<(), NotAScene> {
+    let unwritten = |k: &usize| !places.is_written(&[Step::Key("light"), Step::Item(*k), Step::Key("strength")]);
+    let mut loose = (0..sources.len()).filter(unwritten);
+    let Some(first) = loose.next() else { return Ok(()) };
+    let unit = |k: usize| match sources[k].light.kind() {
+        QuantityKind::RelativeSpectrum => "a relative unit",
+        QuantityKind::Unstated => "a unit that is not stated",
+        kind => kind.unit(),
+    };
+    let Some(other) = loose.find(|k| unit(*k) != unit(first)) else { return Ok(()) };
+    let problem = format!(
+        "found a light in {}, and light `{}` in {}; expected one unit, or a `strength` beside one of them that brings both together \
+         (1 if they are so already)",
+        unit(other),
+        sources[first].name,
+        unit(first)
+    );
+    Err(places.error(&[Step::Key("light"), Step::Item(other), Step::Key("spectrum")], problem))
 }

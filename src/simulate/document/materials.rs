@@ -73,6 +73,7 @@ impl MaterialSection {
                 file: self.file.as_deref().unwrap_or_default(),
                 model: self.model.as_deref(),
                 matrix: self.matrix.as_deref(),
+                has_interface: self.specular.is_some(),
             };
             let found = with.library.material(&source).map_err(|why| with.error(&way, "file", why))?;
             with.said(&format!("material `{}`", self.name), found)

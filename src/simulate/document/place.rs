@@ -74,10 +74,20 @@ impl<'a> Places<'a> {
         at(self.file, self.text, self.offset(way), keys.join("."), problem.into())
     }
 
+    /// True where the author wrote a value, and did not leave it to the schema.
+    pub(super) fn is_written(&self, way: &[Step<'_>]) -> bool {
+        self.find(way).1 == way.len()
+    }
+
     fn offset(&self, way: &[Step<'_>]) -> usize {
+        self.find(way).0
+    }
+
+    /// Where the last part of the way begins that is there, and how many parts are.
+    fn find(&self, way: &[Step<'_>]) -> (usize, usize) {
         let (mut offset, mut list): (usize, Option<&DeArray<'_>>) = (0, None);
         let mut table = Some(&self.table);
-        for step in way {
+        for (found, step) in way.iter().enumerate() {
             let next = match step {
                 Step::Key(key) => {
                     table.and_then(|table| table.iter().find(|(name, _)| name.get_ref() == key)).map(|(name, value)| {
@@ -89,14 +99,14 @@ impl<'a> Places<'a> {
                     list.and_then(|list| list.get(*index)).inspect(|value| offset = value.span().start)
                 }
             };
-            let Some(next) = next else { return offset };
+            let Some(next) = next else { return (offset, found) };
             (table, list) = match next.get_ref() {
                 DeValue::Table(inner) => (Some(inner), None),
                 DeValue::Array(items) => (None, Some(items)),
                 _ => (None, None),
             };
         }
-        offset
+        (offset, way.len())
     }
 
     fn check_numbers(&self, key: &str, value: &toml::Spanned<DeValue<'_>>) -> Result<(), NotAScene> {

@@ -27,6 +27,8 @@ pub struct Source<'a> {
     pub model: Option<&'a str>,
     /// Id of a matrix.
     pub matrix: Option<&'a str>,
+    /// True where the scene states an interface of its own: that of a model is then not asked for.
+    pub has_interface: bool,
 }
 
 /// Triangles of a file: three numbers of places each.
@@ -122,6 +124,7 @@ pub(super) fn resolve(
         names.take(k, &name)?;
         sources.push(light.resolve(Step::Item(k), name, &mut with)?);
     }
+    super::lights::check_units(&sources, places)?;
     let mut names = Names::new("object", places);
     let mut bodies = Vec::with_capacity(objects.len());
     for (k, object) in objects.into_iter().enumerate() {
