@@ -98,7 +98,7 @@ fn share(from: &Patch, of: &Patch) -> f64 {
             of_ball(radius / nearest, cosines[0]).min(by_area * ROUNDING).min(tilt)
         }
         (Extent::Within(_), Extent::Beyond(hole)) => {
-            let (height, aside) = of.from_plane(from.centre);
+            let (height, aside) = of.above_plane(from.centre);
             let Extent::Within(radius) = from.extent else { return 1.0 };
             let (height, far) = (height + from.reach(of.normals.axis), hole - aside - radius);
             if height <= 0.0 {
@@ -119,7 +119,7 @@ fn share(from: &Patch, of: &Patch) -> f64 {
             (ROUNDING * (down * height * height / square + along * beside)).min(1.0)
         }
         (Extent::Beyond(hole), Extent::Within(radius)) => {
-            let (height, aside) = from.from_plane(of.centre);
+            let (height, aside) = from.above_plane(of.centre);
             let (top, far) = (height + of.reach(from.normals.axis), hole - aside);
             if top <= 0.0 {
                 return 0.0;

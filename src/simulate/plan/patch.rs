@@ -239,7 +239,7 @@ impl Patch {
                 }
             }
             (Place::Point(place, reference), Extent::Beyond(hole)) => {
-                let (height, aside) = self.from_plane(place);
+                let (height, aside) = self.above_plane(place);
                 let far = (hole - aside).max(0.0);
                 if height <= 0.0 { 0.0 } else { reference * reference * height / height.hypot(far).powi(3) }
             }
@@ -268,7 +268,7 @@ impl Patch {
     }
 
     /// How high a place is above the plane of a flat patch, and how far from its centre along the plane.
-    pub(super) fn from_plane(&self, place: Vector) -> (f64, f64) {
+    pub(super) fn above_plane(&self, place: Vector) -> (f64, f64) {
         let from = minus(place, self.centre);
         let height = dot(from, self.normals.axis);
         (height, length(along(from, self.normals.axis, -height)))
@@ -305,12 +305,12 @@ impl Patch {
         let tall = scene.size.1 as f64 / scene.size.0 as f64;
         let is_in_hole = |(x, y): (f64, f64)| {
             let (from, towards) = scene.camera.ray(x, y);
-            let (height, _) = self.from_plane(from);
+            let (height, _) = self.above_plane(from);
             let slope = dot(towards, self.normals.axis);
             if height * slope >= 0.0 {
                 return false;
             }
-            let (_, aside) = self.from_plane(along(from, towards, -height / slope));
+            let (_, aside) = self.above_plane(along(from, towards, -height / slope));
             aside < hole
         };
         ![(-1.0, -tall), (1.0, -tall), (1.0, tall), (-1.0, tall)].into_iter().all(is_in_hole)

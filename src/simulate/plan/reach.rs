@@ -140,7 +140,7 @@ pub(super) fn is_seen_from_outside(scene: &Scene, body: &Body) -> bool {
 /// True unless a body provably casts no shadow of a light on itself.
 pub(super) fn may_shade_itself(scene: &Scene, body: usize, source: &Source) -> bool {
     let body = &scene.bodies[body];
-    !source.is_surround() && !(body.shape.is_convex() && is_seen_from_outside(scene, body))
+    !(source.is_surround() || body.shape.is_convex() && is_seen_from_outside(scene, body))
 }
 
 /// True unless a body provably casts no shadow of a light on another.

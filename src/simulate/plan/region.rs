@@ -130,8 +130,8 @@ impl Full<'_> {
         }
         if let Some((most, peak)) = &region.further {
             // Each of X, Y and Z for itself.
-            for c in 0..3 {
-                let left_out = [0, 1, 2].map(|k| if k == c { most[c] } else { 0.0 });
+            for (c, value) in most.iter().enumerate() {
+                let left_out = [0, 1, 2].map(|k| if k == c { *value } else { 0.0 });
                 let factor = Factor { least: 0.0, most: 1.0, kept: [0.0; 3], left_out };
                 parts.all.push(Part { factor, peak: if c == 0 { peak.clone() } else { vec![0.0; peak.len()] } });
             }
