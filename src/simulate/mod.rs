@@ -8,6 +8,7 @@
 //! A [`Scene`] is made from a description in TOML; a plan says what of it is simulated, and why the rest need not be; a
 //! [`Picture`] is drawn by it. [`convex`] is the way for one body under one light, at the limit of the machine.
 
+mod alone;
 mod camera;
 mod choice;
 mod colours;

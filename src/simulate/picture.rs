@@ -4,6 +4,7 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 use rayon::prelude::*;
 
+use super::alone;
 use super::choice::Choice;
 use super::effect::Effect;
 use super::grid::{Grid, NoGrid};
@@ -142,8 +143,23 @@ impl Picture {
             Kept::Colour => vec![0.0, 1.0, 0.0],
             Kept::Spectra => prepared.weights[1].iter().map(|weight| weight * std::f64::consts::PI).collect(),
         };
-        let tracer = Tracer::new(scene, *choice, &prepared.grid, &spectra, eye);
         let (width, height) = scene.size;
+        let picture = |planes: Vec<Vec<Vec<f32>>>, noise: Vec<f32>| Self {
+            width,
+            height,
+            kept,
+            nm: prepared.grid.nm().to_vec(),
+            white: prepared.white,
+            layers: layers.iter().copied().zip(planes).collect(),
+            noise,
+        };
+        if kept == Kept::Colour
+            && let Some(planes) = alone::draw(scene, choice, &mut Ways::new(&spectra), layers)
+        {
+            watch.rows.store(height, Ordering::Relaxed);
+            return Ok(picture(planes, Vec::new()));
+        }
+        let tracer = Tracer::new(scene, *choice, &prepared.grid, &spectra, eye);
         let channels = spectra.channels.len();
         // A row at a time in one piece: layer by layer, in each channel by channel; the noise last.
         let length = (layers.len() * channels + 1) * width;
@@ -178,17 +194,10 @@ impl Picture {
         let plane = |k: usize| {
             rows.iter().flat_map(|row| row[k * width..(k + 1) * width].iter().copied()).collect::<Vec<f32>>()
         };
-        let planes = |l: usize| (0..channels).map(|c| plane(l * channels + c)).collect();
+        let planes = |l: usize| (0..channels).map(|c| plane(l * channels + c)).collect::<Vec<_>>();
         let noise = plane(layers.len() * channels);
-        Ok(Self {
-            width,
-            height,
-            kept,
-            nm: prepared.grid.nm().to_vec(),
-            white: prepared.white,
-            layers: layers.iter().enumerate().map(|(l, layer)| (*layer, planes(l))).collect(),
-            noise: if noise.iter().any(|value| *value != 0.0) { noise } else { Vec::new() },
-        })
+        let noise = if noise.iter().any(|value| *value != 0.0) { noise } else { Vec::new() };
+        Ok(picture((0..layers.len()).map(planes).collect(), noise))
     }
 
     /// The planes of a layer, if it was asked for.

@@ -53,6 +53,18 @@ impl Renderer {
         Self { way: Way::Generic, ..self }
     }
 
+    /// True where several pixels are drawn at once, and not the terms pixel by pixel.
+    #[must_use]
+    pub fn covers(&self, scene: &Scene) -> bool {
+        self.lobe(scene).is_some()
+    }
+
+    fn lobe(&self, scene: &Scene) -> Option<Lobe> {
+        let specular = &scene.specular;
+        let is_covered = self.way == Way::Lanes && INDEX_MINUS_ONE.contains(&(specular.refractive_index - 1.0));
+        if is_covered { Lobe::new(specular.distribution, specular.roughness) } else { None }
+    }
+
     /// Draws one component of a scene on all of a film, with the threads of the current `rayon` pool; the image does not
     /// depend on their number. Says by which way: a specular term with a roughness or index far from any surface's is drawn
     /// by the terms themselves.
@@ -71,12 +83,9 @@ impl Renderer {
 
     fn lit_by<R: Rays>(&self, rays: R, scene: &Scene, component: Component, film: &mut Film) -> Result<Way, Undefined> {
         let colours = scene.of(component);
-        let specular = &scene.specular;
-        let covered = self.way == Way::Lanes && INDEX_MINUS_ONE.contains(&(specular.refractive_index - 1.0));
-        let lobe = if covered { Lobe::new(specular.distribution, specular.roughness) } else { None };
         let length = 3 * film.width();
         let rows = film.numbers_mut().par_chunks_mut(length).with_min_len(ROWS_AT_ONCE).enumerate();
-        let Some(lobe) = lobe else {
+        let Some(lobe) = self.lobe(scene) else {
             rows.try_for_each(|(row, out)| generic::fill(scene, &rays, &colours, row, out))?;
             return Ok(Way::Generic);
         };

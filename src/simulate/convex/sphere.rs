@@ -5,6 +5,7 @@
 
 use std::ops::Range;
 
+use crate::simulate::shape::GRAZING;
 use crate::simulate::vector::Vector;
 
 /// The sphere on a film, seen along parallel lines (orthographically).
@@ -15,6 +16,8 @@ pub struct Sphere {
     /// Radius, pixels.
     radius: f64,
     inverse: f64,
+    /// Square of the depth, pixels, from which on a pixel is on the sphere.
+    least: f64,
 }
 
 /// Numbers that are no place on a film.
@@ -42,7 +45,7 @@ impl Sphere {
         if !near || !(1e-3..=1e6).contains(&radius) {
             return Err(NoSphere { centre, radius });
         }
-        Ok(Self { centre, radius, inverse: 1.0 / radius })
+        Ok(Self { centre, radius, inverse: 1.0 / radius, least: GRAZING * radius * radius })
     }
 
     /// The largest sphere on a film.
@@ -72,7 +75,7 @@ impl Sphere {
     pub(super) fn normal(&self, right: f64, up: f64) -> Vector {
         let depth = (self.radius * self.radius - up * up) - right * right;
         // As a choice, which is one instruction; `max` looks for NaN, too.
-        let depth = if depth > 0.0 { depth } else { 0.0 };
+        let depth = if depth > self.least { depth } else { 0.0 };
         self.normal_with(right, up, depth.sqrt() * self.inverse)
     }
 

@@ -18,6 +18,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use self::full::Full;
+use super::alone::is_alone;
 use super::choice::Choice;
 use super::effect::Effect;
 use super::grid::NoGrid;
@@ -202,6 +203,12 @@ fn route(scene: &Scene, full: &Full<'_>, choice: &Choice) -> Vec<String> {
         "the product of matrix and light is made once for each of {materials} materials and {lights} lights, and not at every pixel: \
          three numbers per term make each colour exactly"
     ));
+    if is_alone(scene, choice) {
+        list.push(
+            "one sphere under one light, seen along parallel lines: colours of many pixels at once, in closed form"
+                .to_owned(),
+        );
+    }
     if choice.has(Effect::Surround) && full.reach.is_open() && scene.bodies.len() == 1 {
         list.push("light from all around in closed form: nothing stands before the body".to_owned());
     } else if choice.has(Effect::Surround) {

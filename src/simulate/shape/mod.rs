@@ -15,6 +15,10 @@ pub use sphere::Ball;
 
 use super::vector::{Vector, dot, length, minus};
 
+/// A ray that enters a sphere no deeper than the root of this, over its radius, does not meet it: rounding alone would say so at a pixel
+/// that looks exactly along its edge.
+pub(in crate::simulate) const GRAZING: f64 = 1e-14;
+
 /// A half line.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Ray {

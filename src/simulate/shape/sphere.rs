@@ -28,7 +28,7 @@ impl Ball {
         } else {
             let across = minus(to_centre, scaled(ray.towards, middle));
             let square = self.radius * self.radius - dot(across, across);
-            if square < 0.0 {
+            if square <= super::GRAZING * self.radius * self.radius {
                 return None;
             }
             let half = square.sqrt();
