@@ -8,6 +8,8 @@
 
 #[path = "../tests/common/bispectral.rs"]
 mod bispectral;
+#[path = "../tests/common/scenes.rs"]
+mod scenes;
 
 use std::hint::black_box;
 use std::process::Command;
@@ -15,7 +17,10 @@ use std::time::Instant;
 
 use bbrf::donaldson::{Extend, Light, Observer};
 use bbrf::simulate::convex::{Colours, Component, Lighting, Renderer, Scene, Sphere, render_dense};
-use bbrf::simulate::{Film, Spectral, reradiate};
+use bbrf::simulate::{
+    Ball, Body, Bounces, Camera, Choice, Effect, Kept, Layer, Picture, Place, Projection, Shape, Watch, plan, reradiate,
+};
+use bbrf::simulate::{Film, Spectral};
 use bbrf::terms::{Denominator, Distribution, TorranceSparrow};
 use ndarray::Array2;
 use rayon::prelude::*;
@@ -124,6 +129,64 @@ fn one_effect(repeats: usize, sphere: Sphere, film: &mut Film, pools: &[rayon::T
     println!("  most by which they differ          {most} units in the last place");
 }
 
+/// What `bbrf render` calls: the plan of a sphere alone beside the full simulation, and what planning adds where nothing can be skipped.
+fn pictures(repeats: usize, pools: &[rayon::ThreadPool; 2]) {
+    let sun = Place::Directional([0.5, 0.0, 0.75_f64.sqrt()]);
+    let mut sphere = scenes::scene(
+        vec![scenes::ball([0.0; 3], 1.0, 0)],
+        vec![scenes::glowing("paper", 0.4, 520.0, 0.5)],
+        vec![scenes::white("sun", sun)],
+    );
+    sphere.materials[0].specular = Some(shining(0.05));
+    sphere.camera =
+        Camera::new([0.0, 0.0, 9.0], [0.0; 3], [0.0, 1.0, 0.0], Projection::Orthographic { width: 2.0 }).unwrap();
+    sphere.size = (SIDE, SIDE);
+    let draw = |scene: &bbrf::simulate::Scene, choice: &Choice| {
+        black_box(Picture::draw(scene, choice, Kept::Colour, &[Layer::Total], &Watch::default()).unwrap());
+    };
+    let report = |name: &str, (median, least): (f64, f64)| println!("  {name:<46}{median:9.2} ({least:7.2})");
+    println!("pictures on 2 threads: a sphere alone, {SIDE} x {SIDE}");
+    let planned = plan(&sphere, 0.0).unwrap().choice;
+    report("plan", time(repeats, || drop(black_box(plan(&sphere, 0.0).unwrap()))));
+    report("as planned, on fresh memory", time(repeats, || pools[1].install(|| draw(&sphere, &planned))));
+    let full = scenes::everything(&sphere);
+    report(
+        "everything, the product at every pixel",
+        time(repeats.div_ceil(8), || pools[1].install(|| draw(&sphere, &full))),
+    );
+    let mut room = sphere.clone();
+    room.bodies = vec![
+        scenes::ball([0.0; 3], 1.0, 0),
+        Body {
+            name: "other".to_owned(),
+            shape: Shape::Sphere(Ball { centre: [1.6, 0.2, -0.3], radius: 0.8 }),
+            material: 0,
+        },
+        scenes::floor(-1.5, 1),
+    ];
+    room.materials.push(scenes::grey(0.6));
+    room.materials[0].specular = Some(TorranceSparrow { intensity: 0.3, ..shining(0.1) });
+    room.sources.push(scenes::lamp("sky", Place::Surround, [0.2, 0.3, 0.4]));
+    room.bounces = Bounces::Most(4);
+    (room.size, room.samples) = ((320, 240), 8);
+    let choice = plan(&room, 0.0).unwrap().choice;
+    assert!(Effect::ALL.iter().all(|effect| choice.has(*effect)), "something is skipped");
+    println!("nothing to skip, 320 x 240, 8 samples");
+    let (mut alone, mut with_plan) = (Vec::new(), Vec::new());
+    for _ in 0..repeats.div_ceil(2) {
+        alone.push(time(1, || pools[1].install(|| draw(&room, &choice))).0);
+        with_plan.push(time(1, || pools[1].install(|| draw(&room, &plan(&room, 0.0).unwrap().choice))).0);
+    }
+    for (name, mut times) in [("everything", alone), ("plan, and what it says", with_plan)] {
+        times.sort_by(f64::total_cmp);
+        report(name, (times[times.len() / 2], times[0]));
+    }
+    report("plan alone", time(repeats, || drop(black_box(plan(&room, 0.0).unwrap()))));
+    room.materials[0].specular = None;
+    report("plan of the same without interfaces", time(repeats, || drop(black_box(plan(&room, 0.0).unwrap()))));
+    report("plan alone, 1 CIELAB", time(repeats.div_ceil(8), || drop(black_box(plan(&room, 1.0).unwrap()))));
+}
+
 const NUMPY: &str = "
 import time, sys, numpy as np
 count, rows, columns, repeats = map(int, sys.argv[1:5])
@@ -181,6 +244,7 @@ fn main() {
         println!("  most by which the last two differ  {} units in the last place", units(&film, &other));
     }
     one_effect(repeats, sphere, &mut other, &pools);
+    pictures(repeats, &pools);
     let black = Instant::now();
     let mut fresh = Film::new(SIDE, SIDE).unwrap();
     let scene = Scene::new(sphere, thirty, spectral.colours(), shining(0.05)).unwrap();

@@ -110,9 +110,13 @@ pub(super) fn draw(
         if let Some(component) = component {
             renderer.render(&body, component, &mut film).ok()?;
         }
-        let plane = |c: usize| match component {
-            Some(_) => (0..height).flat_map(|row| film.row(row, c)).copied().collect(),
-            None => vec![0.0; width * height],
+        let plane = |c: usize| {
+            if component.is_none() {
+                return vec![0.0; width * height];
+            }
+            let mut plane = Vec::with_capacity(width * height);
+            (0..height).for_each(|row| plane.extend_from_slice(film.row(row, c)));
+            plane
         };
         all.push((0..3).map(plane).collect());
     }

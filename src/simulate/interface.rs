@@ -1,6 +1,9 @@
 //! The specular term between any two directions, and directions drawn where it is bright.
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
+use std::sync::{Arc, Mutex};
+
+use rayon::prelude::*;
 
 use super::vector::{Vector, across, along, dot, minus, plus, scaled};
 use crate::quantity::HalfAngles;
@@ -8,6 +11,8 @@ use crate::terms::{Denominator, Distribution, HalfSpace, Lobe, TorranceSparrow, 
 
 /// Angles of viewing that the light from all around is tabulated at.
 const VIEWS: usize = 65;
+/// Most of these tables that are kept.
+const MOST_TABLES: usize = 32;
 
 /// An interface, with what depends on its parameters alone. Its intensity is left to the spectra.
 #[derive(Debug, Clone)]
@@ -146,7 +151,8 @@ impl Interface {
     /// What the interface sends of light from all around, over that which a perfect diffuser does, at cosines of viewing from 0 to 1.
     pub(super) fn surrounded(&self) -> Vec<f64> {
         let normal = [0.0, 0.0, 1.0];
-        let sum = |cosine: f64| {
+        let sum = |k: usize| {
+            let cosine = (k as f64 / (VIEWS - 1) as f64).max(1e-6);
             let sine = (1.0 - cosine * cosine).max(0.0).sqrt();
             let (view, mut sum) = ([sine, 0.0, cosine], 0.0);
             let lights = HalfSpace::new(sine, cosine, self.half_width());
@@ -159,8 +165,25 @@ impl Interface {
                 Ok(()) => sum / PI,
             }
         };
-        (0..VIEWS).map(|k| sum((k as f64 / (VIEWS - 1) as f64).max(1e-6))).collect()
+        (0..VIEWS).into_par_iter().map(sum).collect()
     }
+}
+
+/// [`Interface::surrounded`], kept: the plan of a scene asks for it, and then the picture.
+pub(super) fn surrounded(term: &TorranceSparrow) -> Arc<Vec<f64>> {
+    static KEPT: Mutex<Vec<(TorranceSparrow, Arc<Vec<f64>>)>> = Mutex::new(Vec::new());
+    let term = TorranceSparrow { intensity: 1.0, ..*term };
+    let lock = || KEPT.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+    if let Some((_, table)) = lock().iter().find(|(one, _)| *one == term) {
+        return Arc::clone(table);
+    }
+    let table = Arc::new(Interface::new(&term).surrounded());
+    let mut kept = lock();
+    if kept.len() >= MOST_TABLES {
+        kept.remove(0);
+    }
+    kept.push((term, Arc::clone(&table)));
+    table
 }
 
 /// A table of [`Interface::surrounded`] at a cosine: the cubic through four of its points, straight where the term may end at no

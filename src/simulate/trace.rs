@@ -1,6 +1,7 @@
 //! One pixel: what is lit directly in closed form, what comes by way of other bodies by random paths.
 
 use std::f64::consts::TAU;
+use std::sync::Arc;
 
 use super::choice::Choice;
 use super::effect::Effect;
@@ -40,7 +41,7 @@ pub(super) struct Tracer<'a> {
     pub(super) spectra: &'a Spectra<'a>,
     interfaces: Vec<Option<Interface>>,
     /// Light from all around at the interface of each material.
-    surrounded: Vec<Option<Vec<f64>>>,
+    surrounded: Vec<Option<Arc<Vec<f64>>>>,
     /// The share of energy that each material sends on at most.
     albedo: Vec<f64>,
     /// Weights of the channels in the sum whose noise is said.
@@ -86,10 +87,15 @@ impl<'a> Tracer<'a> {
         let interfaces: Vec<Option<Interface>> = scene.materials.iter().map(of_material).collect();
         let is_surrounded =
             choice.has(Effect::Surround) && scene.sources.iter().any(super::source::Source::is_surround);
-        let table =
-            |interface: &Option<Interface>| interface.as_ref().filter(|_| is_surrounded).map(Interface::surrounded);
+        let table = |material: &super::material::Material| {
+            material
+                .specular
+                .filter(|_| is_surrounded && choice.has(Effect::Specular))
+                .as_ref()
+                .map(interface::surrounded)
+        };
         Self {
-            surrounded: interfaces.iter().map(table).collect(),
+            surrounded: scene.materials.iter().map(table).collect(),
             albedo: spectra.materials.iter().map(|material: &OnGrid| material.albedo(grid)).collect(),
             interfaces,
             scene,

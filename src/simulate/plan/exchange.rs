@@ -19,7 +19,7 @@ const MOST_KEPT: usize = 6_000_000;
 /// What falls by less than this in every order is not bounded.
 const FALLS: f64 = 0.999;
 /// The rest over the first order that is not looked at any closer.
-const SMALL: f64 = 1e-4;
+const SMALL: f64 = 1e-2;
 /// Orders whose colours are told apart, and ways at most.
 const WAYS_OF_ORDERS: u32 = 4;
 const MOST_WAYS: usize = 32;
@@ -196,8 +196,8 @@ impl Exchange {
         (all, orders)
     }
 
-    /// The orders of a scene; `None` where they do not fall.
-    pub(super) fn orders(&self, materials: &[&OnGrid], lights: &[Vec<f64>]) -> Option<Orders> {
+    /// The orders of a scene that asks for so many; `None` where they do not fall.
+    pub(super) fn orders(&self, materials: &[&OnGrid], lights: &[Vec<f64>], bounces: Bounces) -> Option<Orders> {
         let count = lights.first().map_or(0, Vec::len);
         let direct = |lit: &Vec<f64>| -> Vec<f64> {
             (0..count).map(|j| lit.iter().zip(lights).map(|(lit, light)| lit * light[j].abs()).sum()).collect()
@@ -205,7 +205,11 @@ impl Exchange {
         let mut last: Vec<Vec<f64>> = self.lit.iter().map(direct).collect();
         let mut all = Orders { each: Vec::new(), ratio: 0.0 };
         let most = (MOST_KEPT / (1 + self.patches.len() * count)).clamp(4, ORDERS);
-        while all.each.len() < most {
+        let asked = match bounces {
+            Bounces::All => usize::MAX,
+            Bounces::Most(most) => most as usize,
+        };
+        while all.each.len() < most.min(asked) {
             let next = self.next(materials, &last);
             let falls = next.iter().flatten().zip(last.iter().flatten()).map(|(new, old)| match (*new, *old) {
                 (0.0, _) => 0.0,
@@ -219,7 +223,7 @@ impl Exchange {
                 return Some(all);
             }
         }
-        (all.ratio < FALLS).then_some(all)
+        (all.each.len() >= asked || all.ratio < FALLS).then_some(all)
     }
 
     fn next(&self, materials: &[&OnGrid], incident: &[Vec<f64>]) -> Vec<Vec<f64>> {

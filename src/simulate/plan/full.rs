@@ -21,14 +21,13 @@ pub(super) struct Full<'a> {
     /// The brightest of the perfect diffuser.
     pub(super) brightest: f64,
     /// Made where light may go round.
-    between: OnceCell<Between>,
+    between: OnceCell<Option<Between>>,
 }
 
 /// Light between bodies.
 pub(super) struct Between {
     pub(super) exchange: Exchange,
-    /// `None` where nothing bounds them.
-    orders: Option<Orders>,
+    orders: Orders,
     /// Ways of so many first orders, whose colours are known.
     pub(super) ways: Vec<Way>,
     known: u32,
@@ -72,17 +71,20 @@ impl<'a> Full<'a> {
         (0..self.scene.bodies.len()).map(one).collect()
     }
 
-    /// Light between the bodies of this scene.
-    pub(super) fn between(&self) -> &Between {
-        self.between.get_or_init(|| {
-            let exchange = Exchange::new(self.scene);
+    /// Light between the bodies of this scene; `None` where nothing bounds it.
+    pub(super) fn between(&self) -> Option<&Between> {
+        let make = || {
+            // What an interface sends to a third body is not bounded here.
+            let exchange = self.reach.is_matte().then(|| Exchange::new(self.scene))?;
             let of = |body: &Body| &self.prepared.materials[body.material];
             let materials: Vec<_> = self.scene.bodies.iter().map(of).collect();
-            let is_bounded = self.reach.is_matte() && exchange.is_finite();
-            let orders = if is_bounded { exchange.orders(&materials, &self.prepared.lights(self.scene)) } else { None };
-            let (ways, known) = if is_bounded { exchange.ways(self.scene) } else { (Vec::new(), 0) };
-            Between { exchange, orders, ways, known }
-        })
+            let lights = self.prepared.lights(self.scene);
+            let orders =
+                Some(&exchange).filter(|one| one.is_finite())?.orders(&materials, &lights, self.choice.bounces)?;
+            let (ways, known) = exchange.ways(self.scene);
+            Some(Between { exchange, orders, ways, known })
+        };
+        self.between.get_or_init(make).as_ref()
     }
 
     /// All light that may fall on each body; `None` where nothing bounds it.
@@ -102,12 +104,11 @@ impl<'a> Full<'a> {
 
     /// Light that goes from body to body more often than `kept`: the first orders are known by their colours, the rest by its size.
     fn indirect(&self, kept: u32) -> Option<Indirect> {
-        let Between { exchange, orders, known, .. } = self.between();
+        let Between { exchange, orders, known, .. } = self.between()?;
         let most = match self.choice.bounces {
             Bounces::All => *known,
             Bounces::Most(most) => most.min(*known),
         };
-        let orders = orders.as_ref()?;
         let by_patch = orders.beyond(kept.max(most), self.choice.bounces);
         let mut anywhere: Vec<Vec<f64>> = self.lit().into_iter().map(|list| vec![0.0; list.len()]).collect();
         for (patch, incident) in exchange.patches.iter().zip(&orders.beyond(kept, self.choice.bounces)) {

@@ -5,6 +5,9 @@
 //! to a distance that does occur. f of CIE 15 grows everywhere and ever less steeply, so that its differences are bounded by its
 //! values at the ends and by its slope there.
 
+use std::cmp::Ordering;
+use std::collections::BinaryHeap;
+
 /// A factor, with the colours that it multiplies: XYZ over that of white.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Factor {
@@ -61,6 +64,27 @@ struct Box_ {
     bound: f64,
 }
 
+/// The one with the largest bound is the greatest.
+impl Ord for Box_ {
+    fn cmp(&self, other: &Self) -> Ordering {
+        self.bound.total_cmp(&other.bound)
+    }
+}
+
+impl PartialOrd for Box_ {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl PartialEq for Box_ {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other).is_eq()
+    }
+}
+
+impl Eq for Box_ {}
+
 /// Bounds the distance over all factors; where it is below `floor`, it may say `floor`.
 pub(super) fn largest(factors: &[Factor], floor: f64) -> Largest {
     let black = Largest { bound: 0.0, at: [[0.0; 3]; 2] };
@@ -78,14 +102,14 @@ pub(super) fn largest(factors: &[Factor], floor: f64) -> Largest {
     let high: Vec<f64> = factors.iter().map(|one| one.most).collect();
     let mut best = (0.0, [[0.0; 3]; 2]);
     let low: Vec<f64> = factors.iter().map(|one| one.least).collect();
-    let mut boxes = vec![on(&factors, low, high, &mut best)];
+    let mut boxes = BinaryHeap::from([on(&factors, low, high, &mut best)]);
     for _ in 0..BOXES {
-        let Some(worst) = (0..boxes.len()).max_by(|a, b| boxes[*a].bound.total_cmp(&boxes[*b].bound)) else { break };
-        // The last factor is for values that neither matters for.
-        if boxes[worst].bound <= floor.max(CLOSE * best.0) || boxes[worst].bound < 1e-9 {
+        // The last is for values that it does not matter for.
+        let enough = floor.max(CLOSE * best.0).max(1e-9);
+        if boxes.peek().is_none_or(|one| one.bound <= enough) {
             break;
         }
-        let whole = boxes.swap_remove(worst);
+        let Some(whole) = boxes.pop() else { break };
         let weight = |k: usize| {
             let width = whole.high[k] - whole.low[k];
             let colour = |c: usize| factors[k].kept[c].abs().max(factors[k].left_out[c].abs());
@@ -104,11 +128,8 @@ pub(super) fn largest(factors: &[Factor], floor: f64) -> Largest {
                 boxes.push(half);
             }
         }
-        if boxes.is_empty() {
-            break;
-        }
     }
-    let bound = boxes.iter().map(|one| one.bound).fold(best.0, f64::max);
+    let bound = boxes.peek().map_or(0.0, |one| one.bound).max(best.0);
     // Roundings of sums of a few terms.
     Largest { bound: bound * (1.0 + 1e-12), at: best.1 }
 }

@@ -9,6 +9,7 @@ use super::super::picture::{Kept, Prepared};
 use super::super::transport::{Act, Spectra};
 use super::exchange::{Way, radiated};
 use super::full::Full;
+use super::reach::mirror;
 
 /// What follows one factor of the geometry: cos(theta_i) of a light, or its lobe. XYZ are over those of white.
 pub(super) struct Direct {
@@ -114,7 +115,7 @@ impl Full<'_> {
     fn by_ways(&self, material: usize, known: &Range<usize>) -> Vec<ByWay> {
         let spectra = [Kept::Colour, Kept::Spectra].map(|kept| self.prepared.spectra(self.scene, &self.choice, kept));
         let count = spectra[1].channels.len();
-        let ways = self.between().ways.iter().enumerate();
+        let ways = self.between().into_iter().flat_map(|between| &between.ways).enumerate();
         let left = ways.filter(|(_, way)| known.contains(&(way.materials.len() - 1)));
         let by_way = |(number, way): (usize, &Way)| {
             let through = |spectra: &Spectra<'_>| {
@@ -139,7 +140,7 @@ impl Full<'_> {
             // The brightest that this interface may mirror.
             let bodies = self.scene.bodies.iter().enumerate();
             let lit = self.lit();
-            let mirror = self.reach.mirror(self.scene, body);
+            let mirror = mirror(self.scene, body);
             for (other, one) in bodies.filter(|(other, _)| self.reach.seen[body][*other] > 0.0) {
                 let all: Vec<f64> = lit[other].iter().zip(&anywhere[other]).map(|(a, b)| a + b).collect();
                 let mirrored = radiated(&self.prepared.materials[one.material], &all);

@@ -1,7 +1,7 @@
 //! How much light may reach a body, and which bodies may stand in each other's light or see each other.
 
 use super::super::camera::Projection;
-use super::super::interface::Interface;
+use super::super::interface::{Interface, surrounded};
 use super::super::scene::{Body, Scene};
 use super::super::shape::Shape;
 use super::super::source::{Place, Source};
@@ -23,8 +23,6 @@ pub(super) struct Reach {
     pub(super) shaded: Vec<Vec<bool>>,
     /// \[body\]\[other\]: share of the hemisphere.
     pub(super) seen: Vec<Vec<f64>>,
-    /// Largest share of light from all around that each body's interface sends on.
-    pub(super) mirrored: Vec<f64>,
     /// Whether each body's material has an interface that reflects.
     pub(super) has_interface: Vec<bool>,
 }
@@ -43,15 +41,6 @@ impl Reach {
             })
             .collect();
         let interface = |body: usize| interfaces[scene.bodies[body].material].as_ref();
-        let has_surround = scene.sources.iter().any(Source::is_surround);
-        let tables: Vec<f64> = interfaces
-            .iter()
-            .map(|one| {
-                one.as_ref()
-                    .filter(|_| has_surround)
-                    .map_or(0.0, |one| TABLE * one.surrounded().into_iter().fold(0.0, f64::max))
-            })
-            .collect();
         let rings_of = |body: usize, source: &Source| match interface(body) {
             Some(one) if !source.is_surround() => rings(scene, &scene.bodies[body], source, one),
             _ => Vec::new(),
@@ -61,7 +50,7 @@ impl Reach {
         };
         let lit = |body: usize, source: &Source| most_lit(&scene.bodies[body].shape, source);
         let shining = |body: usize, source: &Source| match interface(body) {
-            Some(_) if source.is_surround() => tables[scene.bodies[body].material],
+            Some(_) if source.is_surround() => mirror(scene, body),
             _ => rings_of(body, source).iter().map(|ring| ring.shining).fold(0.0, f64::max),
         };
         let shades = |body: usize| {
@@ -87,7 +76,6 @@ impl Reach {
                 .map(|body| scene.sources.iter().map(|source| rings_of(body, source)).collect())
                 .collect(),
             shaded: bodies.clone().map(shades).collect(),
-            mirrored: bodies.clone().map(|body| tables[scene.bodies[body].material]).collect(),
             has_interface: bodies.clone().map(|body| interface(body).is_some()).collect(),
             seen,
         }
@@ -96,15 +84,6 @@ impl Reach {
     /// True where light may go from one body to another, or from one part of a body to another.
     pub(super) fn is_open(&self) -> bool {
         self.seen.iter().flatten().all(|share| *share == 0.0)
-    }
-
-    /// The share of light from all around that the interface of a body sends on at most.
-    pub(super) fn mirror(&self, scene: &Scene, body: usize) -> f64 {
-        if self.mirrored[body] > 0.0 {
-            return self.mirrored[body];
-        }
-        let term = scene.materials[scene.bodies[body].material].specular;
-        term.map_or(0.0, |term| TABLE * Interface::new(&term).surrounded().into_iter().fold(0.0, f64::max))
     }
 
     /// True where every body that can be seen from another has no interface.
@@ -208,4 +187,10 @@ pub(super) fn most_seen(scene: &Scene, from: usize, of: usize) -> f64 {
     };
     // A sphere straight ahead takes up the square of the sine of its half width.
     if nearest > radius { (radius / nearest).powi(2) } else { 1.0 }
+}
+
+/// The share of light from all around that the interface of a body sends on at most.
+pub(super) fn mirror(scene: &Scene, body: usize) -> f64 {
+    let term = scene.materials[scene.bodies[body].material].specular;
+    term.map_or(0.0, |term| TABLE * surrounded(&term).iter().copied().fold(0.0, f64::max))
 }

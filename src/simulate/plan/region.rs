@@ -72,7 +72,7 @@ impl Full<'_> {
     }
 
     fn patches<'a>(&self, body: usize, left: &'a LeftOut, indirect: &Indirect) -> Vec<Region<'a>> {
-        let Between { exchange, ways, .. } = self.between();
+        let Some(Between { exchange, ways, .. }) = self.between() else { return Vec::new() };
         let lights = 0..self.scene.sources.len();
         exchange
             .patches
@@ -178,7 +178,7 @@ impl Full<'_> {
                 if let Some(base) = base {
                     factors[*base].least = least.min(factors[*base].most);
                 }
-                all = all.larger(self.found(&factors, &spectra, floor));
+                all = all.larger(self.found(&factors, &spectra, floor.max(all.delta_e)));
             }
         }
         all
