@@ -142,8 +142,8 @@ fn of_ball(sine: f64, cosine: f64) -> f64 {
 }
 
 impl Exchange {
-    pub(super) fn new(scene: &Scene) -> Self {
-        let patches = cut(scene);
+    pub(super) fn new(scene: &Scene, most: usize) -> Self {
+        let patches = cut(scene, most);
         let sees = |from: &Patch| {
             let all = patches.iter().enumerate().map(|(number, of)| (number, share(from, of)));
             all.filter(|(_, share)| *share > 0.0).collect()

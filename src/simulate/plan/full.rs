@@ -10,6 +10,7 @@ use super::super::scene::{Body, Bounces, Scene};
 use super::super::source::Source;
 use super::bound::Bound;
 use super::exchange::{Exchange, Orders, Way};
+use super::lab::Interest;
 use super::reach::Reach;
 
 /// The full picture, against which plans are held.
@@ -20,6 +21,8 @@ pub(super) struct Full<'a> {
     pub(super) prepared: Prepared,
     /// The brightest of the perfect diffuser.
     pub(super) brightest: f64,
+    /// Into about how many patches bodies are cut at most.
+    patches: usize,
     /// Made where light may go round.
     between: OnceCell<Option<Between>>,
 }
@@ -44,12 +47,12 @@ pub(super) struct Indirect {
 }
 
 impl<'a> Full<'a> {
-    pub(super) fn new(scene: &'a Scene, choice: Choice) -> Result<Self, NoGrid> {
+    pub(super) fn new(scene: &'a Scene, choice: Choice, patches: usize) -> Result<Self, NoGrid> {
         let prepared = Prepared::new(scene, choice.step_nm)?;
         let lights = prepared.lights(scene);
         let sum = |j: usize| lights.iter().map(|light| light[j]).sum::<f64>();
         let brightest = (0..prepared.grid.nm().len()).map(sum).fold(0.0, f64::max);
-        Ok(Self { reach: Reach::new(scene), scene, choice, prepared, brightest, between: OnceCell::new() })
+        Ok(Self { reach: Reach::new(scene), scene, choice, prepared, brightest, patches, between: OnceCell::new() })
     }
 
     /// Largest irradiance of each body by the lights themselves, at every wavelength.
@@ -75,7 +78,7 @@ impl<'a> Full<'a> {
     pub(super) fn between(&self) -> Option<&Between> {
         let make = || {
             // What an interface sends to a third body is not bounded here.
-            let exchange = self.reach.is_matte().then(|| Exchange::new(self.scene))?;
+            let exchange = self.reach.is_matte().then(|| Exchange::new(self.scene, self.patches))?;
             let of = |body: &Body| &self.prepared.materials[body.material];
             let materials: Vec<_> = self.scene.bodies.iter().map(of).collect();
             let lights = self.prepared.lights(self.scene);
@@ -151,6 +154,15 @@ impl<'a> Full<'a> {
 
     /// What no pixel changes by more than when `plan` is drawn and not this.
     pub(super) fn bound(&self, plan: &Choice) -> Bound {
+        self.bound_of(plan, Interest::ALL)
+    }
+
+    /// True where no pixel changes by more than so much.
+    pub(super) fn keeps(&self, plan: &Choice, tolerance: f64) -> bool {
+        self.bound_of(plan, Interest { floor: tolerance, ceiling: tolerance }).delta_e <= tolerance
+    }
+
+    fn bound_of(&self, plan: &Choice, interest: Interest) -> Bound {
         let is_same = Effect::ALL.iter().all(|effect| plan.has(*effect) || self.is_nothing(*effect));
         if is_same && plan.bounces == self.choice.bounces && plan.step_nm == self.choice.step_nm {
             return Bound::ZERO;
@@ -180,7 +192,13 @@ impl<'a> Full<'a> {
                 || drops(Effect::Specular)
                 || drops(Effect::Surround));
         let Some(indirect) = indirect.filter(|_| !is_chained) else { return Bound::UNKNOWN };
-        let bodies = 0..self.scene.bodies.len();
-        bodies.map(|body| self.of_body(body, plan, &prepared, indirect.as_ref())).fold(Bound::ZERO, Bound::larger)
+        let mut all = Bound::ZERO;
+        for body in 0..self.scene.bodies.len() {
+            if all.delta_e > interest.ceiling {
+                break;
+            }
+            all = all.larger(self.of_body(body, plan, &prepared, indirect.as_ref(), interest.above(all.delta_e)));
+        }
+        all
     }
 }

@@ -32,8 +32,9 @@ pub(super) struct Largest {
 
 /// A bound so close to what occurs is close enough.
 const CLOSE: f64 = 1.1;
-/// Most boxes looked at.
+/// Most boxes looked at, and most factors of all of them.
 const BOXES: usize = 3000;
+const BOXES_TIMES_FACTORS: usize = 10_000;
 /// (6/29)^3 and (29/6)^2 / 3.
 const EDGE: f64 = 216.0 / 24_389.0;
 const SLOPE: f64 = 841.0 / 108.0;
@@ -85,8 +86,27 @@ impl PartialEq for Box_ {
 
 impl Eq for Box_ {}
 
-/// Bounds the distance over all factors; where it is below `floor`, it may say `floor`.
-pub(super) fn largest(factors: &[Factor], floor: f64) -> Largest {
+/// How closely a distance is looked at.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Interest {
+    /// Where it is below this, any number below this will do.
+    pub(super) floor: f64,
+    /// Where it is above this, any number above this will do.
+    pub(super) ceiling: f64,
+}
+
+impl Interest {
+    /// In every distance.
+    pub(super) const ALL: Self = Self { floor: 0.0, ceiling: f64::INFINITY };
+
+    /// Where so large a distance is known already.
+    pub(super) fn above(self, known: f64) -> Self {
+        Self { floor: self.floor.max(known), ..self }
+    }
+}
+
+/// Bounds the distance over all factors.
+pub(super) fn largest(factors: &[Factor], Interest { floor, ceiling }: Interest) -> Largest {
     let black = Largest { bound: 0.0, at: [[0.0; 3]; 2] };
     let factors: Vec<Factor> = factors
         .iter()
@@ -103,18 +123,20 @@ pub(super) fn largest(factors: &[Factor], floor: f64) -> Largest {
     let mut best = (0.0, [[0.0; 3]; 2]);
     let low: Vec<f64> = factors.iter().map(|one| one.least).collect();
     let mut boxes = BinaryHeap::from([on(&factors, low, high, &mut best)]);
-    for _ in 0..BOXES {
+    for _ in 0..BOXES.min(BOXES_TIMES_FACTORS / factors.len()) {
         // The last is for values that it does not matter for.
-        let enough = floor.max(CLOSE * best.0).max(1e-9);
-        if boxes.peek().is_none_or(|one| one.bound <= enough) {
+        let close = if ceiling.is_finite() { 0.0 } else { CLOSE * best.0 };
+        let enough = floor.max(close).max(1e-9);
+        if best.0 > ceiling || boxes.peek().is_none_or(|one| one.bound <= enough) {
             break;
         }
         let Some(whole) = boxes.pop() else { break };
+        let sums = [0, 1, 2].map(|c| 1e-3 + sum(&factors, &whole.low, c));
         let weight = |k: usize| {
             let width = whole.high[k] - whole.low[k];
             let colour = |c: usize| factors[k].kept[c].abs().max(factors[k].left_out[c].abs());
             // Relative to what else there is, for f turns most where there is little.
-            (0..3).map(|c| width * colour(c) / (1e-3 + sum(&factors, &whole.low, c))).fold(0.0, f64::max)
+            (0..3).map(|c| width * colour(c) / sums[c]).fold(0.0, f64::max)
         };
         let side = (0..factors.len()).max_by(|a, b| weight(*a).total_cmp(&weight(*b))).unwrap_or(0);
         let middle = (whole.low[side] + whole.high[side]) / 2.0;
@@ -199,7 +221,7 @@ mod tests {
                     }
                 })
                 .collect();
-            let found = largest(&factors, 0.0);
+            let found = largest(&factors, Interest::ALL);
             let mut most = 0.0_f64;
             for _ in 0..2000 {
                 let g: Vec<f64> = factors

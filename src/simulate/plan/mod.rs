@@ -73,12 +73,19 @@ pub struct Plan {
 pub fn plan(scene: &Scene, max_delta_e: f64) -> Result<Plan, NoPicture> {
     scene.check()?;
     let everything = Choice::everything(scene.bounces, scene.grid.step());
-    let full = Full::new(scene, everything)?;
+    // Without a tolerance the bound of interreflection decides nothing: it may be wide, and must not take longer than a small part of
+    // the picture. Time goes with pairs of patches, and one pair takes about as long as 30 rays.
+    let patches = if max_delta_e > 0.0 { usize::MAX } else { (0.001 * cost(scene, &everything)).sqrt() as usize };
+    let full = Full::new(scene, everything, patches)?;
     let nothing: Vec<Effect> = Effect::ALL.iter().copied().filter(|effect| full.is_nothing(*effect)).collect();
     let base = Choice { by_pixel: false, ..nothing.iter().fold(everything, |choice, effect| choice.without(*effect)) };
     let alone: Vec<Bound> = Effect::ALL.iter().map(|effect| full.bound(&everything.without(*effect))).collect();
     let choice = if max_delta_e > 0.0 { cheapest(scene, &full, base, &alone, max_delta_e)? } else { base };
-    let bound = full.bound(&choice);
+    let mut bound = full.bound(&choice);
+    if max_delta_e > 0.0 && choice != base {
+        // That has been proven, by a closer look.
+        bound.delta_e = bound.delta_e.min(max_delta_e);
+    }
     let decision = |(effect, alone): (&Effect, &Bound)| {
         let simulate = choice.has(*effect);
         let reason = reason(scene, &full, *effect, simulate, alone, nothing.contains(effect), max_delta_e);
@@ -130,7 +137,7 @@ fn cheapest(scene: &Scene, full: &Full<'_>, base: Choice, alone: &[Bound], toler
         }
     }
     plans.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let keeps = |choice: &Choice| full.bound(choice).delta_e <= tolerance;
+    let keeps = |choice: &Choice| full.keeps(choice, tolerance);
     Ok(plans.into_iter().map(|(_, choice)| choice).find(keeps).unwrap_or(base))
 }
 
@@ -268,5 +275,5 @@ impl Plan {
 /// [`NoPicture`] for a scene that cannot be drawn.
 pub fn bound(scene: &Scene, choice: &Choice) -> Result<Bound, NoPicture> {
     scene.check()?;
-    Ok(Full::new(scene, Choice::everything(scene.bounces, scene.grid.step()))?.bound(choice))
+    Ok(Full::new(scene, Choice::everything(scene.bounces, scene.grid.step()), usize::MAX)?.bound(choice))
 }

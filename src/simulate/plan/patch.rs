@@ -32,23 +32,24 @@ pub(super) struct Patch {
     pub(super) is_convex: bool,
 }
 
-/// How finely bodies are cut: as many patches as a scene of so many bodies leaves time for.
-fn fineness(bodies: usize) -> usize {
-    match bodies {
+/// How finely bodies are cut: as many patches as a scene of so many bodies leaves time for, and about so many at most.
+fn fineness(bodies: usize, most: usize) -> usize {
+    let by_bodies = match bodies {
         0..=3 => 4,
         4..=6 => 3,
         7..=16 => 2,
         17..=60 => 1,
         _ => 0,
-    }
+    };
+    (0..=by_bodies).rev().find(|fine| 8 * fine * fine * bodies <= most).unwrap_or(0)
 }
 
 /// Edges of the parts of a plane without end, in radii of what else there is.
 const EDGES: [&[f64]; 5] = [&[2.0], &[1.0, 4.0], &[0.6, 2.0, 8.0], &[0.3, 0.8, 2.0, 8.0], &[0.25, 0.5, 1.0, 2.5, 10.0]];
 
-/// Cuts all bodies.
-pub(super) fn cut(scene: &Scene) -> Vec<Patch> {
-    let fine = fineness(scene.bodies.len());
+/// Cuts all bodies, in about so many patches at most.
+pub(super) fn cut(scene: &Scene, most: usize) -> Vec<Patch> {
+    let fine = fineness(scene.bodies.len(), most);
     let middle = middle(scene);
     let mut all = Vec::new();
     for (number, body) in scene.bodies.iter().enumerate() {

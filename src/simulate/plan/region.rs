@@ -7,7 +7,7 @@ use super::super::effect::Effect;
 use super::super::picture::Prepared;
 use super::bound::Bound;
 use super::full::{Between, Full, Indirect};
-use super::lab::{Factor, Largest, largest};
+use super::lab::{Factor, Interest, Largest, largest};
 use super::left::LeftOut;
 
 /// Lights that a place may be in the shade of or not, all combinations of which are looked at.
@@ -44,7 +44,14 @@ struct Parts {
 
 impl Full<'_> {
     /// What no pixel of a body changes by more than.
-    pub(super) fn of_body(&self, body: usize, plan: &Choice, planned: &Prepared, indirect: Option<&Indirect>) -> Bound {
+    pub(super) fn of_body(
+        &self,
+        body: usize,
+        plan: &Choice,
+        planned: &Prepared,
+        indirect: Option<&Indirect>,
+        interest: Interest,
+    ) -> Bound {
         let left = self.left_out(body, plan, planned, indirect.map_or(0..0, |indirect| indirect.known.clone()));
         let mut regions = match indirect {
             None => vec![self.whole(body, &left)],
@@ -55,7 +62,10 @@ impl Full<'_> {
         regions.sort_by(|a, b| size(b).total_cmp(&size(a)));
         let mut all = Bound::ZERO;
         for region in &regions {
-            all = all.larger(self.over_shades(region, plan, all.delta_e));
+            if all.delta_e > interest.ceiling {
+                break;
+            }
+            all = all.larger(self.over_shades(region, plan, interest.above(all.delta_e)));
         }
         all
     }
@@ -139,8 +149,8 @@ impl Full<'_> {
         parts
     }
 
-    /// The largest difference of a region; smaller ones than `floor` need not be told exactly.
-    fn over_shades(&self, region: &Region<'_>, plan: &Choice, floor: f64) -> Bound {
+    /// The largest difference of a region.
+    fn over_shades(&self, region: &Region<'_>, plan: &Choice, interest: Interest) -> Bound {
         let Parts { all: parts, pairs, shades } = self.parts(region, plan);
         let (body, lights) = (region.body, shades.len());
         if lights > MOST_SHADES {
@@ -164,9 +174,8 @@ impl Full<'_> {
                 factors[*at] = shadow.factor;
                 spectra[*at] = &shadow.peak;
             }
-            let floor = floor.max(all.delta_e);
             let Some((light, [base, Some(lobe)])) = lobe else {
-                all = all.larger(self.found(&factors, &spectra, floor));
+                all = all.larger(self.found(&factors, &spectra, interest.above(all.delta_e)));
                 continue;
             };
             // In the shade of this light there is neither; the rings are of places that it reaches.
@@ -178,13 +187,13 @@ impl Full<'_> {
                 if let Some(base) = base {
                     factors[*base].least = least.min(factors[*base].most);
                 }
-                all = all.larger(self.found(&factors, &spectra, floor.max(all.delta_e)));
+                all = all.larger(self.found(&factors, &spectra, interest.above(all.delta_e)));
             }
         }
         all
     }
 
-    fn found(&self, factors: &[Factor], spectra: &[&Vec<f64>], floor: f64) -> Bound {
+    fn found(&self, factors: &[Factor], spectra: &[&Vec<f64>], interest: Interest) -> Bound {
         let count = spectra.first().map_or(0, |list| list.len());
         let at = |j: usize| {
             let part = |(factor, list): (&Factor, &&Vec<f64>)| if list[j] == 0.0 { 0.0 } else { factor.most * list[j] };
@@ -197,7 +206,7 @@ impl Full<'_> {
                 sides.fold((0.0, 0.0), |(low, high): (f64, f64), value| (low + value.min(0.0), high + value.max(0.0)));
             high.max(-low)
         };
-        let Largest { bound, at } = largest(factors, floor);
+        let Largest { bound, at } = largest(factors, interest);
         Bound { radiance, luminance, delta_e: bound, ciede2000_there: self.ciede2000(at) }
     }
 
