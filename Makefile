@@ -81,7 +81,7 @@ $(VENV)/soak-ready: $(VENV)/ready tests/python/soak.txt
 	touch $@
 
 soak: soak-damage fuzz-check $(VENV)/soak-ready ## Long runs: ten thousand cases of every property, two thousand scans, a million points against 60 digits, scenes against Mitsuba 3, and the two below.
-	BBRF_PROPTEST_CASES=10000 BBRF_TRIALS=2000 BBRF_POINTS=1000000 BBRF_PYTHON=$(VENV)/bin/python $(CARGO) test --locked --release
+	BBRF_PROPTEST_CASES=10000 BBRF_SCENES=10000 BBRF_TRIALS=2000 BBRF_POINTS=1000000 BBRF_PYTHON=$(VENV)/bin/python $(CARGO) test --locked --release
 
 # Unoptimised, where arithmetic that overflows is a panic; in 4 GiB of memory, where what asks for more is refused.
 soak-damage: $(CMAKE_READY) $(VENV)/ready ## 100,000 damaged copies, 500 killed writers, full disks: the figures of docs/damage.md.

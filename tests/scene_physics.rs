@@ -45,21 +45,52 @@ fn a_closed_cavity_is_the_sum_of_its_series() {
             Camera::new([0.5, 0.0, 0.1], [2.0, 0.3, 0.0], [0.0, 0.0, 1.0], Projection::Perspective { width_deg: 80.0 })
                 .unwrap();
         scene.size = (6, 6);
-        scene.samples = 200;
-        for bounces in [Bounces::Most(0), Bounces::Most(1), Bounces::Most(4), Bounces::All] {
-            scene.bounces = bounces;
+        for (bounces, samples) in
+            [(0, 4), (1, 4), (2, 4), (3, 16)].map(|(most, samples)| (Bounces::Most(most), samples))
+        {
+            (scene.bounces, scene.samples) = (bounces, samples);
             let picture = spectra(&scene, &everything(&scene));
             let expected = series(&scene, 0.25, bounces);
-            let planes = picture.layer(Layer::Total).unwrap();
             let peak = expected.iter().copied().fold(0.0, f64::max);
-            for (plane, expected) in planes.iter().zip(&expected) {
-                let mean = plane.iter().map(|value| f64::from(*value)).sum::<f64>() / plane.len() as f64;
-                // A path that ends at random is the only chance here: 36 pixels of 200 samples.
-                let allowed = if bounces == Bounces::All { 0.03 * peak } else { 1e-6 * peak };
-                assert!((mean - expected).abs() < allowed, "{label}, {bounces:?}: {mean} for {expected}");
+            // Nothing is left to chance: every path of a sphere sees the same, and none ends before its time.
+            for (plane, expected) in picture.layer(Layer::Total).unwrap().iter().zip(&expected) {
+                assert!(
+                    plane.iter().all(|value| (f64::from(*value) - expected).abs() < 1e-6 * peak),
+                    "{label}, {bounces:?}"
+                );
             }
         }
+        let mut errors = Vec::new();
+        for (bounces, samples) in
+            [4, 16, 64, 256, 1024].into_iter().flat_map(|n| [(Bounces::Most(6), n), (Bounces::All, n)])
+        {
+            (scene.bounces, scene.samples) = (bounces, samples);
+            let picture = spectra(&scene, &everything(&scene));
+            let expected = luminance_of(&series(&scene, 0.25, bounces), &picture, &scene);
+            let film = picture.film(&scene, Layer::Total).unwrap();
+            let y: Vec<f64> = (0..36).map(|k| f64::from(film.pixel(k % 6, k / 6).unwrap()[1])).collect();
+            let mean = y.iter().sum::<f64>() / y.len() as f64;
+            let squares: f64 = picture.noise.iter().map(|noise| f64::from(*noise).powi(2)).sum();
+            let stated = squares.sqrt() / y.len() as f64;
+            assert!(
+                (mean - expected).abs() < 5.0 * stated,
+                "{label}, {bounces:?}, {samples}: {mean} +- {stated} for {expected}"
+            );
+            if bounces == Bounces::All {
+                errors.push((f64::from(samples), stated));
+            }
+        }
+        let fall = (errors[0].1 / errors[4].1) / (errors[4].0 / errors[0].0).sqrt();
+        println!("closed cavity, {label}: stated errors fall by {fall:.2} times the root of the number of samples");
+        assert!(fall > 0.7, "{errors:?}");
     }
+}
+
+/// Y of a spectrum, as the picture weighs its own; white has 1.
+fn luminance_of(spectrum: &[f64], like: &Picture, scene: &Scene) -> f64 {
+    let planes = spectrum.iter().map(|value| vec![*value as f32; like.width * like.height]).collect();
+    let picture = Picture { layers: vec![(Layer::Total, planes)], ..like.clone() };
+    f64::from(picture.film(scene, Layer::Total).unwrap().pixel(0, 0).unwrap()[1])
 }
 
 /// Radiance over all orders of a cavity where each order lights every place alike.

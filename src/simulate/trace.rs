@@ -343,7 +343,8 @@ impl<'a> Tracer<'a> {
                     out.add(held.act, weight * factor, ways.lit(held.way, light));
                 }
             }
-            if self.choice.bounces == Bounces::All && bounce >= CERTAIN {
+            // With fewer bounces, too: a path of few is that of all, cut off.
+            if bounce >= CERTAIN {
                 // A body that takes nothing away ends no path; an interface may give more than it gets on the way.
                 let most = if self.interfaces[spot.material].is_some() { 0.95 } else { 1.0 };
                 let stays = self.albedo[spot.material].clamp(0.05, most);

@@ -2,8 +2,8 @@
 //!
 //! Each patch sees another in a share of its hemisphere that is bounded by the cones of their normals, the distance and the area, and
 //! all together in the whole of it at most. So the largest radiances of one order bound the irradiances of the next, wavelength by
-//! wavelength. The bound of an order is monotone and homogeneous in that of the one before: once all of it falls by a factor r, what
-//! follows is at most r / (1 - r) of it.
+//! wavelength. The bound of an order is monotone and homogeneous in that of the one before: once all of it falls by a factor r in two
+//! orders, what follows is at most r / (1 - r) of them.
 
 use std::f64::consts::FRAC_1_PI;
 
@@ -13,6 +13,8 @@ use super::super::vector::{dot, length, minus, scaled};
 use super::cone::Cone;
 use super::patch::{Extent, Patch, cut};
 
+/// Orders after which no bound was found.
+const MOST_ORDERS: usize = 3000;
 /// Orders that are kept before the rest is bounded: at most, and numbers of all of them.
 const ORDERS: usize = 64;
 const MOST_KEPT: usize = 6_000_000;
@@ -49,8 +51,8 @@ pub(super) struct Way {
 /// Largest irradiances of the patches by light that has gone from body to body, once, twice and so on.
 pub(super) struct Orders {
     each: Vec<Vec<Vec<f64>>>,
-    /// By what the last has fallen at least.
-    ratio: f64,
+    /// All that follows on them; `None` where nothing was looked for.
+    rest: Option<Vec<Vec<f64>>>,
 }
 
 /// pi times the radiance of a material under an irradiance; noise below 0 counts in full.
@@ -203,27 +205,24 @@ impl Exchange {
             (0..count).map(|j| lit.iter().zip(lights).map(|(lit, light)| lit * light[j].abs()).sum()).collect()
         };
         let mut last: Vec<Vec<f64>> = self.lit.iter().map(direct).collect();
-        let mut all = Orders { each: Vec::new(), ratio: 0.0 };
+        let mut each: Vec<Vec<Vec<f64>>> = Vec::new();
         let most = (MOST_KEPT / (1 + self.patches.len() * count)).clamp(4, ORDERS);
         let asked = match bounces {
             Bounces::All => usize::MAX,
             Bounces::Most(most) => most as usize,
         };
-        while all.each.len() < most.min(asked) {
-            let next = self.next(materials, &last);
-            let falls = next.iter().flatten().zip(last.iter().flatten()).map(|(new, old)| match (*new, *old) {
-                (0.0, _) => 0.0,
-                (_, 0.0) => f64::INFINITY,
-                (new, old) => new / old,
-            });
-            all.ratio = falls.fold(0.0, f64::max);
-            last.clone_from(&next);
-            all.each.push(next);
-            if all.has_rest_below(SMALL) {
-                return Some(all);
+        while each.len() < most.min(asked) {
+            last = self.next(materials, &last);
+            each.push(last.clone());
+            if let Some(rest) = rest(&each).filter(|rest| largest(rest) <= SMALL * largest(&each[0])) {
+                return Some(Orders { each, rest: Some(rest) });
             }
         }
-        (all.each.len() >= asked || all.ratio < FALLS).then_some(all)
+        if each.len() >= asked {
+            return Some(Orders { each, rest: None });
+        }
+        let rest = rest(&each).or_else(|| rest_anywhere(materials, &last))?;
+        Some(Orders { each, rest: Some(rest) })
     }
 
     fn next(&self, materials: &[&OnGrid], incident: &[Vec<f64>]) -> Vec<Vec<f64>> {
@@ -259,12 +258,55 @@ impl Exchange {
     }
 }
 
-impl Orders {
-    fn has_rest_below(&self, part: f64) -> bool {
-        let most = |order: Option<&Vec<Vec<f64>>>| order.into_iter().flatten().flatten().copied().fold(0.0, f64::max);
-        self.ratio < FALLS && most(self.each.last()) * self.ratio / (1.0 - self.ratio) <= part * most(self.each.first())
-    }
+fn largest(order: &[Vec<f64>]) -> f64 {
+    order.iter().flatten().copied().fold(0.0, f64::max)
+}
 
+/// By what one order lies below another at least; infinite where it does not.
+fn ratio<'a>(new: impl Iterator<Item = &'a f64>, old: impl Iterator<Item = &'a f64>) -> f64 {
+    let falls = new.zip(old).map(|(new, old)| match (*new, *old) {
+        (0.0, _) => 0.0,
+        (_, 0.0) => f64::INFINITY,
+        (new, old) => new / old,
+    });
+    falls.fold(0.0, f64::max)
+}
+
+/// What follows on the last of these orders. Over two orders, for between two bodies the light goes to and fro: where every value has
+/// fallen by r in two, what follows on the last two is at most r / (1 - r) of both.
+fn rest(each: &[Vec<Vec<f64>>]) -> Option<Vec<Vec<f64>>> {
+    let [.., before, middle, last] = each else { return None };
+    let falls = ratio(last.iter().flatten(), before.iter().flatten());
+    (falls < FALLS).then(|| {
+        let factor = falls / (1.0 - falls);
+        let sum = |(a, b): (&Vec<f64>, &Vec<f64>)| a.iter().zip(b).map(|(a, b)| factor * (a + b)).collect();
+        middle.iter().zip(last).map(sum).collect()
+    })
+}
+
+/// The same by the brightest patch of each order alone, which no material makes brighter: for scenes where some part of the light
+/// goes on for long at a place and dies soon at another.
+fn rest_anywhere(materials: &[&OnGrid], last: &[Vec<f64>]) -> Option<Vec<Vec<f64>>> {
+    let count = last.first().map_or(0, Vec::len);
+    let mut order: Vec<f64> = (0..count).map(|j| last.iter().map(|list| list[j]).fold(0.0, f64::max)).collect();
+    let mut sum = vec![0.0; count];
+    for _ in 0..MOST_ORDERS {
+        let mut next = vec![0.0; count];
+        for material in materials {
+            next.iter_mut().zip(radiated(material, &order)).for_each(|(most, value)| *most = f64::max(*most, value));
+        }
+        let falls = ratio(next.iter(), order.iter());
+        order = next;
+        sum.iter_mut().zip(&order).for_each(|(sum, value)| *sum += value);
+        if falls < FALLS {
+            sum.iter_mut().zip(&order).for_each(|(sum, value)| *sum += falls / (1.0 - falls) * value);
+            return Some(vec![sum; last.len()]);
+        }
+    }
+    None
+}
+
+impl Orders {
     /// The sum of all that has gone from body to body more than `kept` times, and not more often than the scene asks for.
     pub(super) fn beyond(&self, kept: u32, bounces: Bounces) -> Vec<Vec<f64>> {
         let (kept, stored) = (kept as usize, self.each.len());
@@ -272,23 +314,18 @@ impl Orders {
             Bounces::All => usize::MAX,
             Bounces::Most(most) => most as usize,
         };
-        let zero = || {
-            self.each
-                .first()
-                .map_or(Vec::new(), |first| first.iter().map(|list| vec![0.0; list.len()]).collect::<Vec<_>>())
-        };
-        let mut sum = zero();
-        let mut add = |order: &[Vec<f64>], factor: f64| {
+        let mut sum: Vec<Vec<f64>> =
+            self.each.first().into_iter().flatten().map(|list| vec![0.0; list.len()]).collect();
+        let mut add = |order: &[Vec<f64>]| {
             for (sum, order) in sum.iter_mut().flatten().zip(order.iter().flatten()) {
-                *sum += factor * order;
+                *sum += order;
             }
         };
         for order in self.each.iter().take(most.min(stored)).skip(kept) {
-            add(order, 1.0);
+            add(order);
         }
-        if let Some(last) = self.each.last().filter(|_| most > stored.max(kept)) {
-            let further = kept.saturating_sub(stored) as f64;
-            add(last, self.ratio.powf(further + 1.0) / (1.0 - self.ratio));
+        if let Some(rest) = self.rest.as_ref().filter(|_| most > stored.max(kept)) {
+            add(rest);
         }
         sum
     }

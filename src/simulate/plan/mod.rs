@@ -81,6 +81,7 @@ pub fn plan(scene: &Scene, max_delta_e: f64) -> Result<Plan, NoPicture> {
     let base = Choice { by_pixel: false, ..nothing.iter().fold(everything, |choice, effect| choice.without(*effect)) };
     let alone: Vec<Bound> = Effect::ALL.iter().map(|effect| full.bound(&everything.without(*effect))).collect();
     let choice = if max_delta_e > 0.0 { cheapest(scene, &full, base, &alone, max_delta_e)? } else { base };
+    let choice = if choice.bounces == Bounces::Most(0) { choice.without(Effect::Interreflection) } else { choice };
     let mut bound = full.bound(&choice);
     if max_delta_e > 0.0 && choice != base {
         // That has been proven, by a closer look.
@@ -176,7 +177,7 @@ fn reason(
         return if alone.delta_e.is_finite() {
             format!("without it a pixel may change by up to {:.3} CIELAB", alone.delta_e)
         } else {
-            "nothing bounds what it adds".to_owned()
+            "no bound is known of what it adds".to_owned()
         };
     }
     if !is_nothing {
@@ -207,7 +208,7 @@ fn route(scene: &Scene, full: &Full<'_>, choice: &Choice) -> Vec<String> {
     let mut list = Vec::new();
     let (materials, lights) = (scene.materials.len(), scene.sources.len());
     list.push(format!(
-        "the product of matrix and light is made once for each of {materials} materials and {lights} lights, and not at every pixel: \
+        "the product of matrix and light is made once for each material and light ({materials} x {lights}), and not at every pixel: \
          three numbers per term make each colour exactly"
     ));
     if is_alone(scene, choice) {
@@ -231,6 +232,15 @@ fn route(scene: &Scene, full: &Full<'_>, choice: &Choice) -> Vec<String> {
             scene.samples
         ));
     }
+    if let (true, Bounces::Most(most)) =
+        (choice.has(Effect::Interreflection) && choice.bounces != scene.bounces, choice.bounces)
+    {
+        let all = match scene.bounces {
+            Bounces::All => "as often as it does".to_owned(),
+            Bounces::Most(all) => format!("{all} times"),
+        };
+        list.push(format!("light goes from body to body {most} times at most and not {all}"));
+    }
     if choice.step_nm != scene.grid.step() {
         list.push(format!("wavelengths in steps of {} nm and not {} nm", choice.step_nm, scene.grid.step()));
     }
@@ -241,7 +251,11 @@ impl Plan {
     /// The plan as text.
     #[must_use]
     pub fn text(&self) -> String {
-        let number = |value: f64| if value.is_finite() { format!("{value:.3}") } else { "no bound".to_owned() };
+        let number = |value: f64| match value {
+            value if !value.is_finite() => "no bound".to_owned(),
+            value if value > 0.0 && value < 5e-4 => format!("{value:.0e}"),
+            value => format!("{value:.3}"),
+        };
         let mut text = String::from("effect            do        CIELAB  why\n");
         for one in &self.effects {
             let what = if one.simulate { "simulate" } else { "skip" };
@@ -265,7 +279,7 @@ impl Plan {
                 )
             }
         };
-        text + &format!("what is left out changes a pixel by {rest}\n")
+        text + &format!("what is left out changes a pixel by {rest}")
     }
 }
 

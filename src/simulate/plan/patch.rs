@@ -232,8 +232,13 @@ impl Patch {
             (Place::Directional(towards), _) => self.normals.most_cosine(&Cone::of(towards)),
             (Place::Point(place, reference), Extent::Within(radius)) => {
                 let cosine = self.normals.most_cosine(&Cone::between(self.centre, place, radius));
-                let nearest = length(minus(place, self.centre)) - radius;
+                let way = minus(place, self.centre);
+                // Above a flat patch it is as far at least as it is high, and behind it it lights the other side.
+                let is_flat = self.normals.half == 0.0;
+                let height = if is_flat { dot(way, self.normals.axis) } else { 0.0 };
+                let nearest = height.max(length(way) - radius);
                 match (cosine, nearest) {
+                    _ if is_flat && height <= 0.0 => 0.0,
                     (0.0, _) => 0.0,
                     (_, nearest) if nearest <= 0.0 => f64::INFINITY,
                     (cosine, nearest) => cosine * (reference / nearest).powi(2),

@@ -121,6 +121,7 @@ pub(crate) fn run(arguments: &Arguments) -> CommandResult {
         None => Choice::everything(resolved.scene.bounces, resolved.scene.grid.step()),
     };
     let place = arguments.scene.display().to_string();
+    may_be_written(&arguments.output)?;
     let mut picture = draw::draw(&place, resolved, &choice, &layers, arguments.threads)?;
     if arguments.layers.is_empty() {
         // Nothing to see, and nothing that was asked for.
@@ -137,6 +138,17 @@ pub(crate) fn run(arguments: &Arguments) -> CommandResult {
         print_text(&result.text(&arguments.output))?;
     }
     Ok(Outcome::Done)
+}
+
+/// Looks before the work whether there is, or may be, such a folder.
+fn may_be_written(folder: &Path) -> Result<(), miette::Report> {
+    if folder.is_dir() {
+        return Ok(());
+    }
+    // Made and taken away again: nothing stays of a work that is interrupted.
+    std::fs::create_dir_all(folder)
+        .and_then(|()| std::fs::remove_dir(folder))
+        .map_err(|error| miette!("{}: expected a folder, or a place where one can be made: {error}", folder.display()))
 }
 
 fn each_once(layers: &[Layer]) -> Vec<Layer> {

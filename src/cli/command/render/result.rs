@@ -6,7 +6,7 @@ use std::path::Path;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::LAYERS;
+use super::{LAYERS, RECORD};
 use crate::simulate::document::Resolved;
 use crate::simulate::image::{Gamut, OutOfGamut};
 use crate::simulate::{Bounces, Kept, Layer, Picture, Plan};
@@ -98,17 +98,18 @@ struct Outside {
 /// Standard error (k = 1) of the Y of the pixels, from the scatter of their samples; white has a Y of 1.
 #[derive(Debug, Serialize, JsonSchema)]
 struct Noise {
-    /// Half of all pixels have less.
-    median: f32,
+    /// Half of the pixels that have any have less; `null` of one sample, which says nothing about its scatter.
+    median: Option<f32>,
     /// None has more.
-    largest: f32,
+    largest: Option<f32>,
 }
 
 impl Noise {
     fn of(picture: &Picture) -> Option<Self> {
-        let mut sorted = picture.noise.clone();
+        let mut sorted: Vec<f32> = picture.noise.iter().copied().filter(|value| *value != 0.0).collect();
         sorted.sort_by(f32::total_cmp);
-        Some(Self { median: *sorted.get(sorted.len() / 2)?, largest: *sorted.last()? })
+        let known = |value: f32| Some(value).filter(|value| value.is_finite());
+        Some(Self { median: known(*sorted.get(sorted.len() / 2)?), largest: known(*sorted.last()?) })
     }
 }
 
@@ -182,16 +183,26 @@ impl RenderResult {
             let skipped = plan.effects.iter().filter(|one| !one.simulate).map(|one| one.effect.name());
             let skipped = skipped.collect::<Vec<_>>().join(", ");
             let _ = match skipped.as_str() {
-                "" => write!(text, "\nnothing was left out"),
-                _ => write!(text, "\nleft out: {skipped}; a pixel changes by at most {:.3} CIELAB", plan.bound.delta_e),
+                "" => write!(text, "\nno effect was left out"),
+                _ => write!(text, "\nleft out: {skipped}"),
+            };
+            let _ = match plan.bound.is_zero() {
+                true => write!(text, "; no pixel changes"),
+                false => write!(
+                    text,
+                    "; a pixel changes by at most {:.3} CIELAB (`plan` in {RECORD} says how)",
+                    plan.bound.delta_e
+                ),
             };
         }
         if let Some(noise) = &self.noise {
-            let _ = write!(
-                text,
-                "\nstandard error of Y: {:.2e} in the median, {:.2e} at most (white is 1)",
-                noise.median, noise.largest
-            );
+            let _ = match (noise.median, noise.largest) {
+                (Some(median), Some(largest)) => write!(
+                    text,
+                    "\nstandard error of Y where light was drawn at random: {median:.2e} in the median, {largest:.2e} at most (white is 1)"
+                ),
+                _ => write!(text, "\nstandard error of Y: unknown from one sample; --samples 2 or more tell"),
+            };
         }
         text
     }
