@@ -1,8 +1,16 @@
 //! Lights without extent: parallel rays, and a point.
 
+use std::f64::consts::FRAC_PI_2;
+use std::ops::Range;
+
+use super::sphere::Sphere;
+use super::stretch::Stretches;
 use crate::quantity::HalfAngles;
 use crate::simulate::vector::{Vector, dot, length, minus, scaled};
 use crate::terms::fresnel;
+
+/// What rounding may add to an angle, radians, and to F.
+const ROUNDING: f64 = 1e-7;
 
 /// Where the light comes from. x points to the right, y up, z to the camera; the sphere has radius 1 and its centre at 0.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -36,6 +44,10 @@ pub(super) struct Half {
 
 /// One kind of light, as what the inner loop is compiled for.
 pub(super) trait Rays: Sync + Copy {
+    /// What is known of a row before its pixels are looked at; `cuts` as in [`Stretches::of`].
+    fn stretches(&self, sphere: &Sphere, row: usize, columns: Range<usize>, cuts: [f64; 2]) -> Stretches;
+    /// The largest theta_Q, radians, and the largest F.
+    fn most(&self) -> (f64, f64);
     fn beam(&self, normal: Vector) -> Beam;
     /// |L + V|^2.
     fn length2(&self, beam: &Beam) -> f64;
@@ -97,6 +109,14 @@ impl Point {
 }
 
 impl Rays for Parallel {
+    fn stretches(&self, sphere: &Sphere, row: usize, columns: Range<usize>, cuts: [f64; 2]) -> Stretches {
+        Stretches::of(sphere, row, columns, [self.beam.towards, self.half.q], cuts)
+    }
+
+    fn most(&self) -> (f64, f64) {
+        (ROUNDING + (0.5 * self.length2.sqrt()).min(1.0).acos(), self.half.fresnel * (1.0 + ROUNDING))
+    }
+
     #[inline(always)]
     fn beam(&self, _: Vector) -> Beam {
         // A number that the compiler knows: it leaves out the products.
@@ -115,6 +135,21 @@ impl Rays for Parallel {
 }
 
 impl Rays for Point {
+    fn stretches(&self, _: &Sphere, _: usize, columns: Range<usize>, _: [f64; 2]) -> Stretches {
+        Stretches::unknown(columns)
+    }
+
+    fn most(&self) -> (f64, f64) {
+        // Seen from the sphere the light stands within a cone about the direction of its place.
+        let away = length(self.place);
+        let apart = (self.place[2] / away).clamp(-1.0, 1.0).acos() + (1.0 / away).min(1.0).asin();
+        let theta_q = (ROUNDING + 0.5 * apart).min(FRAC_PI_2);
+        // F grows with the angle where n is below 2 + sqrt(3); beyond it falls first.
+        let grows = self.index_minus_one < 2.7;
+        let fresnel = reflectance(theta_q.cos(), theta_q.sin().powi(2), self.index_minus_one);
+        (theta_q, if grows { fresnel * (1.0 + ROUNDING) } else { 1.0 })
+    }
+
     #[inline(always)]
     fn beam(&self, normal: Vector) -> Beam {
         let way = minus(self.place, normal);

@@ -14,6 +14,7 @@ mod render;
 mod scene;
 mod shade;
 mod sphere;
+mod stretch;
 
 pub use dense::render_dense;
 pub use lighting::Lighting;

@@ -1,10 +1,13 @@
 //! The inner loop: a few pixels of a row at once, in arithmetic that the compiler turns into vector instructions.
 #![allow(clippy::needless_range_loop, reason = "a lane is an index into several arrays, and is told to be one")]
 
+use std::ops::Range;
+
 use super::lighting::{Beam, Rays};
 use super::lobe::Lobe;
 use super::scene::{Colours, Scene};
 use super::sphere::Sphere;
+use super::stretch::Stretches;
 use crate::simulate::vector::{Vector, dot, minus};
 use crate::terms::Denominator;
 
@@ -42,8 +45,8 @@ pub(super) struct Frame<R> {
     lobe: Lobe,
     denominator: Denominator,
     has_lobe: bool,
-    /// Square of the cosine of phi beyond which the lobe is not seen; 2 where it is never seen, 0 where it may be everywhere.
-    cut2: f64,
+    /// Cosine of phi beyond which the lobe is not seen; 2 where it is never seen, 0 where it may be everywhere.
+    cut: f64,
 }
 
 /// A point of the surface.
@@ -61,6 +64,21 @@ impl Point {
     #[inline(always)]
     fn lit(&self) -> f64 {
         if self.is_lit { self.cos_i * self.beam.strength } else { 0.0 }
+    }
+}
+
+/// The three planes of a row.
+struct Planes<'a> {
+    planes: [&'a mut [f32]; 3],
+}
+
+impl Planes<'_> {
+    fn part(&mut self, columns: Range<usize>) -> [&mut [f32]; 3] {
+        self.planes.each_mut().map(|plane| &mut plane[columns.clone()])
+    }
+
+    fn black(&mut self, columns: Range<usize>) {
+        self.part(columns).into_iter().for_each(|plane| plane.fill(0.0));
     }
 }
 
@@ -85,17 +103,23 @@ impl<R: Rays> Frame<R> {
     pub(super) fn new(scene: &Scene, rays: R, lobe: Lobe, colours: &Colours) -> Self {
         let (base, denominator) = (colours.base(), scene.specular.denominator);
         let shine = colours.specular.map(|value| scene.specular.intensity * value);
-        // F and G are 1 at most, and the cosines STEEPEST at least; the strength of the light is that of the diffuse terms, too.
-        let divided = if denominator == Denominator::CosICosV { STEEPEST * STEEPEST } else { STEEPEST };
-        let bound = |c: usize| {
-            let seen = if base[c] == 0.0 { NOTHING } else { QUARTER_UNIT * STEEPEST * base[c].abs() };
-            // Without a colour no bound: nothing is seen of it.
-            seen * divided / shine[c].abs()
-        };
-        let bound = bound(0).min(bound(1)).min(bound(2));
         let has_lobe = shine != [0.0; 3];
-        let cut = if !has_lobe { 2.0 } else { lobe.cosine_where_below(bound).max(0.0) };
-        Self { sphere: scene.sphere, rays, base, shine, lobe, denominator, has_lobe, cut2: cut * cut }
+        let (theta_q, fresnel) = rays.most();
+        // The lobe is not seen where D is so small, if neither cosine is below `least`. G is 1 at most; the strength of the light is
+        // that of the diffuse terms, too.
+        let unseen = |least: f64| {
+            let divided = if denominator == Denominator::CosICosV { least * least } else { least };
+            let bound = |c: usize| {
+                let seen = if base[c] == 0.0 { NOTHING } else { QUARTER_UNIT * least * base[c].abs() };
+                // Without a colour no bound: nothing is seen of it.
+                seen * divided / (fresnel * shine[c].abs())
+            };
+            lobe.cosine_where_below(bound(0).min(bound(1)).min(bound(2))).max(0.0)
+        };
+        // Within phi of the half vector both cosines are that of theta_Q + phi at least, by which phi grows smaller.
+        let closer = |cut: f64| unseen((theta_q + cut.acos()).cos().max(STEEPEST));
+        let cut = if has_lobe { (0..4).fold(unseen(STEEPEST), |cut, _| closer(cut)) } else { 2.0 };
+        Self { sphere: scene.sphere, rays, base, shine, lobe, denominator, has_lobe, cut }
     }
 
     /// Writes a row, all of it: the film may hold another image.
@@ -104,61 +128,100 @@ impl<R: Rays> Frame<R> {
         let width = out.len() / 3;
         let (red, rest) = out.split_at_mut(width);
         let (green, blue) = rest.split_at_mut(width);
+        let mut planes = Planes { planes: [red, green, blue] };
         let columns = self.sphere.columns(row, width);
-        for plane in [&mut *red, &mut *green, &mut *blue] {
-            plane[..columns.start].fill(0.0);
-            plane[columns.end..].fill(0.0);
-        }
+        let Stretches { lit, calm, shining } = self.rays.stretches(&self.sphere, row, columns, [self.cut, STEEPEST]);
         let up = self.sphere.up(row);
-        let mut middle = columns.start as f64 + 0.5;
-        let planes = [&mut red[columns.clone()], &mut green[columns.clone()], &mut blue[columns]];
-        if !self.has_lobe {
-            // A scene without a lobe pays nothing for it.
-            return self.diffuse(up, middle, planes);
-        }
-        let [mut red, mut green, mut blue] = planes.map(|plane| plane.chunks_exact_mut(LANES));
-        for ((red, green), blue) in (&mut red).zip(&mut green).zip(&mut blue) {
-            self.pixels::<S>(up, middle, [red, green, blue]);
-            middle += LANES as f64;
-        }
-        let mut last = [[0.0; LANES]; 3];
-        let [r, g, b] = &mut last;
-        self.pixels::<S>(up, middle, [r, g, b]);
-        for (rest, last) in [red, green, blue].into_iter().zip(&last) {
-            let rest = rest.into_remainder();
-            rest.copy_from_slice(&last[..rest.len()]);
-        }
+        planes.black(0..lit.start);
+        self.looked_at::<S>(up, lit.start, planes.part(lit.start..calm.start));
+        self.calm(up, calm.start, planes.part(calm.start..shining.start));
+        self.shining::<S>(up, shining.start, planes.part(shining.clone()));
+        self.calm(up, shining.end, planes.part(shining.end..calm.end));
+        self.looked_at::<S>(up, calm.end, planes.part(calm.end..lit.end));
+        planes.black(lit.end..width);
     }
 
-    /// Any number of pixels in a row where no lobe is seen.
+    /// Pixels that light falls on and where no lobe is seen.
     #[inline(always)]
-    fn diffuse(&self, up: f64, middle: f64, [red, green, blue]: [&mut [f32]; 3]) {
+    fn calm(&self, up: f64, first: usize, [red, green, blue]: [&mut [f32]; 3]) {
+        let middle = first as f64 + 0.5;
         for (lane, ((red, green), blue)) in red.iter_mut().zip(green).zip(blue).enumerate() {
-            let lit = self.point(middle + f64::from(lane as i32), up).lit();
+            let point = self.point(middle + f64::from(lane as i32), up);
+            let lit = point.cos_i * point.beam.strength;
             *red = (lit * self.base[0]) as f32;
             *green = (lit * self.base[1]) as f32;
             *blue = (lit * self.base[2]) as f32;
         }
     }
 
-    /// `LANES` pixels of a row. Those beside the sphere are black.
+    /// Pixels that are asked whether light falls on them and whether the lobe is seen.
     #[inline(always)]
-    fn pixels<S: pulp::Simd>(&self, up: f64, middle: f64, [red, green, blue]: [&mut [f32]; 3]) {
-        let (mut cos_v, mut shining) = ([0.0; LANES], 0);
-        for (lane, ((red, green), blue)) in red.iter_mut().zip(&mut *green).zip(&mut *blue).enumerate().take(LANES) {
-            let point = self.point(middle + STEPS[lane], up);
+    fn looked_at<S: pulp::Simd>(&self, up: f64, first: usize, planes: [&mut [f32]; 3]) {
+        let mut middle = first as f64 + 0.5;
+        let [mut red, mut green, mut blue] = planes.map(|plane| plane.chunks_exact_mut(LANES));
+        for ((red, green), blue) in (&mut red).zip(&mut green).zip(&mut blue) {
+            let mut cos_v = [0.0; LANES];
+            if self.diffuse(up, middle, [red, green, blue], &mut cos_v) {
+                self.lobes::<S>(up, middle, &cos_v, [red, green, blue]);
+            }
+            middle += LANES as f64;
+        }
+        let mut rest = [red, green, blue].map(|plane| plane.into_remainder());
+        let mut cos_v = [0.0; LANES];
+        let [red, green, blue] = &mut rest;
+        if self.diffuse(up, middle, [red, green, blue], &mut cos_v) {
+            self.few_lobes::<S>(up, middle, &cos_v, rest);
+        }
+    }
+
+    /// The diffuse terms of `LANES` pixels at most, and the cosines of viewing. True where the lobe may be seen at one of them.
+    #[inline(always)]
+    fn diffuse(&self, up: f64, middle: f64, [red, green, blue]: [&mut [f32]; 3], cos_v: &mut Lanes) -> bool {
+        let mut shining = 0;
+        let pixels = red.iter_mut().zip(green).zip(blue).zip(cos_v).zip(&STEPS);
+        for ((((red, green), blue), cos_v), step) in pixels {
+            let point = self.point(middle + step, up);
             let lit = point.lit();
             *red = (lit * self.base[0]) as f32;
             *green = (lit * self.base[1]) as f32;
             *blue = (lit * self.base[2]) as f32;
-            cos_v[lane] = point.normal[2];
+            *cos_v = point.normal[2];
             shining += u64::from(self.may_shine(&point));
         }
-        if shining == 0 {
-            return;
+        self.has_lobe & (shining > 0)
+    }
+
+    /// Pixels where the lobe may be seen.
+    #[inline(always)]
+    fn shining<S: pulp::Simd>(&self, up: f64, first: usize, planes: [&mut [f32]; 3]) {
+        let mut middle = first as f64 + 0.5;
+        let [mut red, mut green, mut blue] = planes.map(|plane| plane.chunks_exact_mut(LANES));
+        for ((red, green), blue) in (&mut red).zip(&mut green).zip(&mut blue) {
+            self.lobes::<S>(up, middle, &self.cosines(up, middle), [red, green, blue]);
+            middle += LANES as f64;
         }
-        let [lit, shine] = self.lobe::<S>(up, middle, &cos_v);
-        for (c, plane) in [red, green, blue].into_iter().enumerate() {
+        let rest = [red, green, blue].map(|plane| plane.into_remainder());
+        if !rest[0].is_empty() {
+            self.few_lobes::<S>(up, middle, &self.cosines(up, middle), rest);
+        }
+    }
+
+    /// Fewer than `LANES` pixels with all terms.
+    #[inline(always)]
+    fn few_lobes<S: pulp::Simd>(&self, up: f64, middle: f64, cos_v: &Lanes, planes: [&mut [f32]; 3]) {
+        let mut all = [[0.0; LANES]; 3];
+        let [red, green, blue] = &mut all;
+        self.lobes::<S>(up, middle, cos_v, [red, green, blue]);
+        for (plane, all) in planes.into_iter().zip(&all) {
+            plane.copy_from_slice(&all[..plane.len()]);
+        }
+    }
+
+    /// `LANES` pixels with all terms. Those beside the sphere are black.
+    #[inline(always)]
+    fn lobes<S: pulp::Simd>(&self, up: f64, middle: f64, cos_v: &Lanes, planes: [&mut [f32]; 3]) {
+        let [lit, shine] = self.lobe::<S>(up, middle, cos_v);
+        for (c, plane) in planes.into_iter().enumerate() {
             for (lane, value) in plane.iter_mut().enumerate().take(LANES) {
                 *value = (lit[lane] * self.base[c] + shine[lane] * self.shine[c]) as f32;
             }
@@ -169,11 +232,17 @@ impl<R: Rays> Frame<R> {
     #[inline(always)]
     pub(super) fn shares<S: pulp::Simd>(&self, row: usize, first: usize) -> [Lanes; 2] {
         let (up, middle) = (self.sphere.up(row), first as f64 + 0.5);
+        self.lobe::<S>(up, middle, &self.cosines(up, middle))
+    }
+
+    /// The cosines of viewing.
+    #[inline(always)]
+    fn cosines(&self, up: f64, middle: f64) -> Lanes {
         let mut cos_v = [0.0; LANES];
         for lane in 0..LANES {
             cos_v[lane] = self.point(middle + STEPS[lane], up).normal[2];
         }
-        self.lobe::<S>(up, middle, &cos_v)
+        cos_v
     }
 
     /// The surface at the middle of a pixel, by its place on the film.
@@ -195,7 +264,7 @@ impl<R: Rays> Frame<R> {
         // N.Q = (N.L + N.V) / |L + V|, compared without the root.
         let (cos_i, cos_v) = (point.cos_i, point.normal[2]);
         let sum = cos_i + cos_v;
-        let is_near = sum * sum >= self.cut2 * self.rays.length2(&point.beam);
+        let is_near = sum * sum >= self.cut * self.cut * self.rays.length2(&point.beam);
         point.is_lit & (is_near | (cos_i < STEEPEST) | (cos_v < STEEPEST))
     }
 

@@ -56,6 +56,19 @@ impl Sphere {
         Self::new([width as f64 / 2.0, height as f64 / 2.0], width.min(height) as f64 / 2.0)
     }
 
+    /// Pixels.
+    pub(super) fn radius(&self) -> f64 {
+        self.radius
+    }
+
+    /// The columns whose middles are not farther to the left or right of the centre than so many pixels.
+    pub(super) fn columns_between(&self, left: f64, right: f64) -> Range<usize> {
+        // A negative number becomes 0.
+        let first = (self.centre[0] + left - 0.5).ceil() as usize;
+        let last = (self.centre[0] + right + 0.5).floor() as usize;
+        first..last.max(first)
+    }
+
     /// How far a row lies above the centre, pixels.
     #[inline(always)]
     pub(super) fn up(&self, row: usize) -> f64 {
