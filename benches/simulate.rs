@@ -18,7 +18,8 @@ use std::time::Instant;
 use bbrf::donaldson::{Extend, Light, Observer};
 use bbrf::simulate::convex::{Colours, Component, Lighting, Renderer, Scene, Sphere, render_dense};
 use bbrf::simulate::{
-    Ball, Body, Bounces, Camera, Choice, Effect, Kept, Layer, Picture, Place, Projection, Shape, Watch, plan, reradiate,
+    Ball, Body, Bounces, Camera, Choice, Effect, Kept, Layer, Picture, Place, Projection, Real, Shape, Watch, plan,
+    reradiate,
 };
 use bbrf::simulate::{Film, Spectral};
 use bbrf::terms::{Denominator, Distribution, TorranceSparrow};
@@ -260,7 +261,7 @@ fn main() {
 /// The product alone for the lit pixels: our own, that of a crate of hand-written vector code, and NumPy's.
 fn products<A>(kind: &str, [count, rows, columns]: [usize; 3], repeats: usize, pools: &[rayon::ThreadPool; 2])
 where
-    A: ndarray::LinalgScalar + Send + Sync + From<f32>,
+    A: Real + From<f32>,
 {
     let any = |(i, j): (usize, usize)| A::from(((i * 31 + j * 17) % 97) as f32 / 97.0);
     let (light, dense) = (Array2::from_shape_fn((count, rows), any), Array2::from_shape_fn((rows, columns), any));

@@ -1,18 +1,17 @@
 //! What a surface sends out under many incident spectra at once, one per pixel: a product of matrices.
 //!
 //! One incident spectrum needs no more than three numbers per term ([`super::convex`]); this is for scenes where each pixel has its
-//! own, as between surfaces that light each other. Products and sums are rounded one by one and in the order of the excitations, so
-//! that neither the processor nor the threads change a bit.
-#![allow(clippy::needless_range_loop, reason = "a lane is an index into several arrays, and is told to be one")]
+//! own, as between surfaces that light each other. Sums are made in the order of the excitations, so that threads change no bit; a processor
+//! that multiplies and adds in one instruction rounds once and not twice.
 
 use ndarray::{ArrayView2, LinalgScalar};
+use pulp::Simd;
 use rayon::prelude::*;
 
 /// Pixels that one task takes.
 const PIXELS_AT_ONCE: usize = 1024;
-/// Pixels and bytes of emission whose sums stay in registers.
+/// Pixels whose sums over one or two vectors of emissions stay in registers.
 const ROWS: usize = 4;
-const BYTES: usize = 64;
 
 /// Spectra that do not fit the matrix.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
@@ -31,15 +30,59 @@ pub struct NoProduct {
     pub emission: usize,
 }
 
+/// A precision that vectors have: f32 or f64.
+pub trait Real: LinalgScalar + Send + Sync {
+    /// As many numbers as a register holds.
+    type Lanes<S: Simd>: Copy + Send + Sync;
+
+    #[doc(hidden)]
+    fn splat<S: Simd>(simd: S, value: Self) -> Self::Lanes<S>;
+    /// a b + c, in one instruction and with one rounding where the processor has it.
+    #[doc(hidden)]
+    fn add_product<S: Simd>(simd: S, a: Self::Lanes<S>, b: Self::Lanes<S>, c: Self::Lanes<S>) -> Self::Lanes<S>;
+    #[doc(hidden)]
+    fn lanes<S: Simd>(numbers: &[Self]) -> &[Self::Lanes<S>];
+    #[doc(hidden)]
+    fn numbers<S: Simd>(lanes: &[Self::Lanes<S>]) -> &[Self];
+}
+
+macro_rules! real {
+    ($type:ty, $lanes:ident, $splat:ident, $fused:ident, $as:ident) => {
+        impl Real for $type {
+            type Lanes<S: Simd> = S::$lanes;
+
+            #[inline(always)]
+            fn splat<S: Simd>(simd: S, value: Self) -> S::$lanes {
+                simd.$splat(value)
+            }
+
+            #[inline(always)]
+            fn add_product<S: Simd>(simd: S, a: S::$lanes, b: S::$lanes, c: S::$lanes) -> S::$lanes {
+                simd.$fused(a, b, c)
+            }
+
+            #[inline(always)]
+            fn lanes<S: Simd>(numbers: &[Self]) -> &[S::$lanes] {
+                S::$as(numbers).0
+            }
+
+            #[inline(always)]
+            fn numbers<S: Simd>(lanes: &[S::$lanes]) -> &[Self] {
+                bytemuck::cast_slice(lanes)
+            }
+        }
+    };
+}
+
+real!(f64, f64s, splat_f64s, mul_add_e_f64s, as_simd_f64s);
+real!(f32, f32s, splat_f32s, mul_add_e_f32s, as_simd_f32s);
+
 /// Writes `incident`, pixel after pixel, times `matrix` \[excitation, emission\] to `out`, pixel after pixel, in the precision of the
 /// numbers and on the threads of the current `rayon` pool. The matrix holds the width of each excitation.
 ///
 /// # Errors
 /// [`NoProduct`] where the three do not fit; `out` is then as it was.
-pub fn reradiate<A>(incident: &[A], matrix: ArrayView2<A>, out: &mut [A]) -> Result<(), NoProduct>
-where
-    A: LinalgScalar + Send + Sync,
-{
+pub fn reradiate<A: Real>(incident: &[A], matrix: ArrayView2<A>, out: &mut [A]) -> Result<(), NoProduct> {
     let (excitation, emission) = matrix.dim();
     let refused = NoProduct { incident: incident.len(), out: out.len(), excitation, emission };
     if excitation == 0
@@ -52,75 +95,105 @@ where
     if incident.len() / excitation != out.len() / emission {
         return Err(refused);
     }
-    // A compiler makes vectors of a number of lanes that it knows.
-    if size_of::<A>() <= 4 {
-        shared::<A, { BYTES / 4 }>(incident, matrix, out)
-    } else {
-        shared::<A, { BYTES / 8 }>(incident, matrix, out)
-    }
+    pulp::Arch::new().dispatch(Product { incident, matrix, out });
     Ok(())
 }
 
-fn shared<A: LinalgScalar + Send + Sync, const N: usize>(incident: &[A], matrix: ArrayView2<A>, out: &mut [A]) {
-    let (excitation, emission) = matrix.dim();
-    // Columns in groups, each with its rows one after another; what is missing of the last is 0.
-    let panels: Vec<[A; N]> = (0..emission.div_ceil(N))
-        .flat_map(|panel| (0..excitation).map(move |row| (panel * N, row)))
-        .map(|(first, row)| std::array::from_fn(|lane| matrix.get([row, first + lane]).copied().unwrap_or(A::zero())))
-        .collect();
-    let arch = pulp::Arch::new();
-    let tasks = out.par_chunks_mut(PIXELS_AT_ONCE * emission).zip(incident.par_chunks(PIXELS_AT_ONCE * excitation));
-    tasks.for_each(|(out, incident)| {
-        arch.dispatch(Task { incident, panels: &panels, excitation, emission, out });
-    });
+struct Product<'a, A> {
+    incident: &'a [A],
+    matrix: ArrayView2<'a, A>,
+    out: &'a mut [A],
 }
 
-struct Task<'a, A, const N: usize> {
+impl<A: Real> pulp::WithSimd for Product<'_, A> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let (excitation, emission) = self.matrix.dim();
+        let width = size_of::<A::Lanes<S>>() / size_of::<A>();
+        // Columns in groups of a vector, each with its rows one after another; what is missing of the last is 0.
+        let mut panels = vec![A::zero(); emission.div_ceil(width) * excitation * width];
+        for (panel, numbers) in panels.chunks_exact_mut(excitation * width).enumerate() {
+            for (row, numbers) in numbers.chunks_exact_mut(width).enumerate() {
+                for (column, number) in (panel * width..emission).zip(numbers) {
+                    *number = self.matrix[[row, column]];
+                }
+            }
+        }
+        let panels: Vec<&[A::Lanes<S>]> = panels.chunks_exact(excitation * width).map(A::lanes::<S>).collect();
+        let outs = self.out.par_chunks_mut(PIXELS_AT_ONCE * emission);
+        outs.zip(self.incident.par_chunks(PIXELS_AT_ONCE * excitation)).for_each(|(out, incident)| {
+            simd.vectorize(Task { simd, incident, panels: &panels, emission, out });
+        });
+    }
+}
+
+struct Task<'a, S: Simd, A: Real> {
+    simd: S,
     incident: &'a [A],
-    panels: &'a [[A; N]],
-    excitation: usize,
+    panels: &'a [&'a [A::Lanes<S>]],
     emission: usize,
     out: &'a mut [A],
 }
 
-impl<A: LinalgScalar, const N: usize> pulp::WithSimd for Task<'_, A, N> {
+impl<S: Simd, A: Real> pulp::NullaryFnOnce for Task<'_, S, A> {
     type Output = ();
 
     #[inline(always)]
-    fn with_simd<S: pulp::Simd>(self, _: S) {
-        let spectra = self.incident.chunks(ROWS * self.excitation);
-        for (out, spectra) in self.out.chunks_mut(ROWS * self.emission).zip(spectra) {
-            for (panel, matrix) in self.panels.chunks_exact(self.excitation).enumerate() {
-                let first = panel * N;
-                let count = N.min(self.emission - first);
-                if spectra.len() == ROWS * self.excitation {
-                    let sums = product::<A, N, ROWS>(spectra, matrix);
-                    for (out, sums) in out.chunks_exact_mut(self.emission).zip(&sums) {
-                        out[first..first + count].copy_from_slice(&sums[..count]);
-                    }
-                } else {
-                    for (out, spectrum) in
-                        out.chunks_exact_mut(self.emission).zip(spectra.chunks_exact(self.excitation))
-                    {
-                        let [sums] = product::<A, N, 1>(spectrum, matrix);
-                        out[first..first + count].copy_from_slice(&sums[..count]);
-                    }
-                }
+    fn call(self) {
+        let (simd, emission, excitation) = (self.simd, self.emission, self.panels[0].len());
+        let mut packed = vec![[A::zero(); ROWS]; excitation];
+        let spectra = self.incident.chunks(ROWS * excitation);
+        for (out, spectra) in self.out.chunks_mut(ROWS * emission).zip(spectra) {
+            // Side by side, so that the sums run along few pointers. What the last group has of the one before is not written.
+            for (row, spectrum) in spectra.chunks_exact(excitation).enumerate() {
+                packed.iter_mut().zip(spectrum).for_each(|(packed, value)| packed[row] = *value);
+            }
+            let mut first = 0;
+            // Two at once make more sums than additions are under way.
+            let (pairs, last) = self.panels.as_chunks::<2>();
+            for pair in pairs {
+                first = write::<S, A, 2>(product(simd, &packed, *pair), first, emission, out);
+            }
+            for panel in last {
+                first = write::<S, A, 1>(product(simd, &packed, [*panel]), first, emission, out);
             }
         }
     }
 }
 
-/// Some spectra times one group of columns.
+/// Writes the sums of some columns from the first on; the column after them.
 #[inline(always)]
-fn product<A: LinalgScalar, const N: usize, const R: usize>(spectra: &[A], matrix: &[[A; N]]) -> [[A; N]; R] {
-    let mut sums = [[A::zero(); N]; R];
-    let spectra: [&[A]; R] = std::array::from_fn(|row| &spectra[row * matrix.len()..(row + 1) * matrix.len()]);
-    for (k, columns) in matrix.iter().enumerate() {
-        for row in 0..R {
-            let incident = spectra[row][k];
-            for lane in 0..N {
-                sums[row][lane] = sums[row][lane] + incident * columns[lane];
+fn write<S: Simd, A: Real, const V: usize>(
+    sums: [[A::Lanes<S>; V]; ROWS],
+    first: usize,
+    emission: usize,
+    out: &mut [A],
+) -> usize {
+    let mut last = first;
+    for (out, sums) in out.chunks_exact_mut(emission).zip(&sums) {
+        let numbers = A::numbers::<S>(sums);
+        last = emission.min(first + numbers.len());
+        out[first..last].copy_from_slice(&numbers[..last - first]);
+    }
+    last
+}
+
+/// Some spectra times one group of columns or two.
+#[inline(always)]
+fn product<S: Simd, A: Real, const V: usize>(
+    simd: S,
+    spectra: &[[A; ROWS]],
+    panels: [&[A::Lanes<S>]; V],
+) -> [[A::Lanes<S>; V]; ROWS] {
+    let mut sums = [[A::splat(simd, A::zero()); V]; ROWS];
+    let panels = panels.map(|panel| &panel[..spectra.len()]);
+    for (k, incident) in spectra.iter().enumerate() {
+        for (sums, incident) in sums.iter_mut().zip(incident) {
+            let incident = A::splat(simd, *incident);
+            for (sum, panel) in sums.iter_mut().zip(panels) {
+                *sum = A::add_product(simd, incident, panel[k], *sum);
             }
         }
     }
