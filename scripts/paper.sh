@@ -40,9 +40,6 @@ echo 'Every file is valid'
 quietly "$bbrf" validate "$dir"/*/*/fitted.bbrf "$dir/lumi-yellow.bbrf" >/dev/null
 
 # The scene is given beside the matrix and the lamp, which it names relative to itself.
-scene=examples/paper/sphere.toml
-if [ -f "$scene" ]; then
-    echo 'Fig. 6: the sphere, painted with that matrix, under the artificial sun'
-    cp "$scene" "$dir/sphere.toml"
-    quietly "$bbrf" render "$dir/sphere.toml" -o "$dir/sphere" >/dev/null
-fi
+echo 'Fig. 6: the sphere, painted with that matrix, under the artificial sun'
+cp examples/paper/sphere.toml "$dir/sphere.toml"
+quietly "$bbrf" render "$dir/sphere.toml" -o "$dir/sphere" >/dev/null

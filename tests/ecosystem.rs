@@ -11,7 +11,7 @@ use std::path::Path;
 use std::process::Command;
 
 use bbrf::container::{read_file, write_file};
-use bbrf::simulate::image::{Primaries, write_exr};
+use bbrf::simulate::image::{Primaries, Radiance, write_exr};
 
 fn run(program: &str, arguments: &[&str], files: &[&Path]) -> String {
     let output = Command::new(program).args(arguments).args(files).output().unwrap();
@@ -55,7 +55,14 @@ fn the_openexr_project_reads_every_layer_to_the_last_bit() {
     let path = folder.path().join("a.exr");
     let notes = [("seed".to_owned(), "7".to_owned())];
     let file = std::fs::File::create(&path).unwrap();
-    write_exr(layers::SIZE, &layers::layers(), Primaries::Xyz, &notes, std::io::BufWriter::new(file)).unwrap();
+    write_exr(
+        layers::SIZE,
+        &layers::layers(),
+        (Primaries::Xyz, Radiance::Absolute),
+        &notes,
+        std::io::BufWriter::new(file),
+    )
+    .unwrap();
     let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/python/opens_exr.py");
     let parts: Vec<serde_json::Value> = serde_json::from_str(&run(&python, &[], &[&script, &path])).unwrap();
     assert_eq!(parts.len(), layers::layers().len());

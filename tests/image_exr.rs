@@ -6,7 +6,7 @@ mod layers;
 
 use std::io::Cursor;
 
-use bbrf::simulate::image::{Channel, Layer, Primaries, spectral_channel, write_exr};
+use bbrf::simulate::image::{Channel, Layer, Primaries, Radiance, spectral_channel, write_exr};
 use exr::meta::attribute::AttributeValue;
 use exr::prelude::{ReadChannels, ReadLayers, Text, read};
 use layers::{SIZE, layers};
@@ -17,7 +17,7 @@ fn notes() -> Vec<(String, String)> {
 
 fn written(layers: &[Layer], primaries: Primaries) -> Vec<u8> {
     let mut bytes = Cursor::new(Vec::new());
-    write_exr(SIZE, layers, primaries, &notes(), &mut bytes).unwrap();
+    write_exr(SIZE, layers, (primaries, Radiance::Absolute), &notes(), &mut bytes).unwrap();
     bytes.into_inner()
 }
 
@@ -93,7 +93,9 @@ fn the_same_layers_give_the_same_bytes_with_any_number_of_threads() {
 #[test]
 fn what_is_no_image_is_refused_with_the_layer_and_the_channel() {
     let refused = |layers: &[Layer]| {
-        write_exr(SIZE, layers, Primaries::Xyz, &[], Cursor::new(Vec::new())).unwrap_err().to_string()
+        write_exr(SIZE, layers, (Primaries::Xyz, Radiance::Absolute), &[], Cursor::new(Vec::new()))
+            .unwrap_err()
+            .to_string()
     };
     let channel = |name: &str, count: usize| Channel { name: name.to_owned(), values: vec![0.0; count] };
     let layer = |name: &str, channels: Vec<Channel>| Layer { name: name.to_owned(), channels };

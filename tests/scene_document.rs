@@ -114,7 +114,7 @@ fn wrong(old: &str, new: &str) -> String {
 
 #[test]
 fn a_scene_is_what_its_text_says() {
-    let Resolved { scene, kept, exposure, remarks, warnings } = resolve(WHOLE).unwrap();
+    let Resolved { scene, kept, exposure, remarks, warnings, .. } = resolve(WHOLE).unwrap();
     assert_eq!((scene.size, scene.samples, scene.seed), ((4, 3), 8, 9_223_372_036_854_775_807));
     assert_eq!((kept, exposure, scene.observer, scene.bounces), (Kept::Spectra, 2.0, Observer::Ten, Bounces::Most(3)));
     assert_eq!(scene.grid.nm().len(), 31);

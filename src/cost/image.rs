@@ -11,8 +11,10 @@ const TOLERANCES: [f64; 6] = [0.0, 0.1, 0.3, 1.0, 3.0, 10.0];
 const STEPS: [f64; 3] = [2.0, 4.0, 8.0];
 /// Numbers of bounces.
 const BOUNCES: [u32; 5] = [0, 1, 2, 4, 8];
-/// Parts of the scene's samples.
-const SAMPLES: [u32; 3] = [4, 16, 64];
+/// The scene's samples times this, and over it.
+const SAMPLES: [(u32, u32); 4] = [(4, 1), (1, 4), (1, 16), (1, 64)];
+/// How many times as many samples the reference has, from other random numbers: its noise is a third of the scene's.
+const SURER: u32 = 8;
 
 /// One way to draw a scene.
 struct Way {
@@ -31,14 +33,24 @@ struct Way {
 /// # Errors
 /// [`NoPicture`] for a scene that cannot be drawn.
 pub fn image_ladder(scene: &Scene, subject: String, patience: Patience) -> Result<Ladder, NoPicture> {
-    let everything = Choice::everything(scene.bounces, scene.grid.step());
+    let (everything, samples) = (Choice::everything(scene.bounces, scene.grid.step()), scene.samples);
     let full = drawn(scene, &everything)?;
+    let is_random = !full.noise.is_empty();
+    let reference = match is_random {
+        true => drawn(&surer(scene), &plan(scene, 0.0)?.choice)?,
+        false => full.clone(),
+    };
     let mut candidates = Vec::new();
-    for Way { name, knob, options, scene, choice, planned, note } in ways(scene, everything, !full.noise.is_empty())? {
+    for Way { name, knob, options, scene, choice, planned, note } in ways(scene, everything, is_random)? {
         // What cannot be drawn so is no rung: in coarse steps a material may seem to send back more than it receives.
         let Ok(picture) = drawn(&scene, &choice) else { continue };
-        let distances = full.lab_distances(&picture).unwrap_or_default();
+        let distances = reference.lab_distances(&picture).unwrap_or_default();
         let squares = distances.iter().map(|one| one * one).sum::<f64>();
+        // Random numbers are the same wherever as many are drawn: what is left beside them is what the rung leaves out.
+        let systematic = full.lab_distances(&picture).filter(|_| is_random && scene.samples == samples);
+        let systematic = systematic.map(|all| all.into_iter().fold(0.0, f64::max));
+        let systematic = systematic.map(|error| format!("beside the same random numbers {error:.1e}"));
+        let note = note.into_iter().chain(systematic).collect::<Vec<_>>().join("; ");
         candidates.push(Candidate {
             name,
             knob: knob.to_owned(),
@@ -46,7 +58,7 @@ pub fn image_ladder(scene: &Scene, subject: String, patience: Patience) -> Resul
             error: Some(distances.iter().copied().fold(0.0, f64::max)),
             second_error: Some((squares / distances.len().max(1) as f64).sqrt()),
             bytes: None,
-            note,
+            note: Some(note).filter(|note| !note.is_empty()),
             work: Box::new(move || {
                 // Who renders so pays for the plan, too.
                 let is_planned = planned.is_none_or(|tolerance| plan(&scene, tolerance).is_ok());
@@ -56,19 +68,36 @@ pub fn image_ladder(scene: &Scene, subject: String, patience: Patience) -> Resul
             read: None,
         });
     }
-    let noise =
-        if full.noise.is_empty() { "" } else { "; its own noise is part of the error of other samples and bounces" };
+    let of_noise = || {
+        let mut noise = reference.noise.clone();
+        noise.sort_by(f32::total_cmp);
+        format!(
+            "all of the scene with {SURER} times as many samples and other random numbers (standard error of Y {:.1e} in the median, {:.1e} \
+             at most, white being 1)",
+            noise[noise.len() / 2],
+            noise[noise.len() - 1]
+        )
+    };
     let meaning = Meaning {
-        reference: format!(
-            "the scene simulated in full, with the whole product at every pixel, and the same seed and samples{noise}"
-        ),
-        error: "largest CIELAB distance (1976) of a pixel".to_owned(),
+        reference: match is_random {
+            true => of_noise(),
+            false => "the scene simulated in full, with the whole product at every pixel".to_owned(),
+        },
+        error: match is_random {
+            true => "largest CIELAB distance (1976) of a pixel, noise and all".to_owned(),
+            false => "largest CIELAB distance (1976) of a pixel".to_owned(),
+        },
         axis: "largest colour difference of a pixel (CIE 1976)".to_owned(),
         second_error: Some("root mean square of that distance over the pixels".to_owned()),
         time: "seconds to draw the total in colour on all threads, with its plan, without PNG and EXR".to_owned(),
         read_time: None,
     };
     Ok(measured(Task::Image, subject, meaning, candidates, patience))
+}
+
+/// The same scene with less noise, by its own random numbers.
+fn surer(scene: &Scene) -> Scene {
+    Scene { samples: scene.samples.saturating_mul(SURER), seed: scene.seed.wrapping_add(1), ..scene.clone() }
 }
 
 /// In full, by plans, and with less of one thing at a time beside the plan that leaves out nothing.
@@ -84,6 +113,13 @@ fn ways(scene: &Scene, everything: Choice, is_random: bool) -> Result<Vec<Way>, 
     ];
     for tolerance in TOLERANCES {
         let found = plan(scene, tolerance)?;
+        // The same plan is the same rung.
+        if ways
+            .last()
+            .is_some_and(|last| last.planned.is_some_and(|_| last.knob == "plan" && last.choice == found.choice))
+        {
+            continue;
+        }
         let skipped = found.effects.iter().filter(|one| !one.simulate).map(|one| one.effect.name());
         let note = format!("bound {:.3}; left out: {}", found.bound.delta_e, or_nothing(skipped.collect()));
         let options = ["--max-delta-e", &tolerance.to_string()];
@@ -107,8 +143,8 @@ fn ways(scene: &Scene, everything: Choice, is_random: bool) -> Result<Vec<Way>, 
         let name = if most == 1 { "1 bounce".to_owned() } else { format!("{most} bounces") };
         ways.push(of(name, "bounces", &["--bounces", &most.to_string()], fewer, choice));
     }
-    for part in SAMPLES.into_iter().filter(|part| is_random && scene.samples / part > 0) {
-        let samples = scene.samples / part;
+    for (times, over) in SAMPLES.into_iter().filter(|(_, over)| is_random && scene.samples / over > 0) {
+        let samples = scene.samples.saturating_mul(times) / over;
         let fewer = Scene { samples, ..scene.clone() };
         let name = if samples == 1 { "1 sample".to_owned() } else { format!("{samples} samples") };
         ways.push(of(name, "samples", &["--samples", &samples.to_string()], fewer, exact));

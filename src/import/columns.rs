@@ -214,7 +214,8 @@ impl Reader<'_> {
         }
         for pair in rows.windows(2) {
             let found = pair[1].nm - pair[0].nm;
-            let departs = step.is_some_and(|step| (found - step).abs() > 0.2 * step);
+            let is_measured = rows.len() >= FEWEST;
+            let departs = step.is_some_and(|step| is_measured && (found - step).abs() > 0.2 * step);
             if found <= 0.0 || departs {
                 let by = step.map_or_else(String::new, |step| format!(" by {step}"));
                 return Err(ImportError::Malformed(fault(
@@ -248,6 +249,9 @@ impl Reader<'_> {
         }
     }
 }
+
+/// Fewer rows are no record of an instrument but knots that somebody chose, at whatever distance.
+const FEWEST: usize = 10;
 
 /// The step that more than half of the rows have, to 1e-6 of it.
 fn usual_step(rows: &[Row]) -> Option<f64> {

@@ -41,6 +41,12 @@ pub enum NoCamera {
 }
 
 impl Camera {
+    /// Where it stands.
+    #[must_use]
+    pub fn place(&self) -> [f64; 3] {
+        self.place
+    }
+
     /// A camera at a place, looking at another.
     ///
     /// # Errors

@@ -56,7 +56,7 @@ impl Picture {
             _ => None,
         };
         let grid = grid.filter(|grid| grid.nm().len() == self.nm.len()).unwrap_or_else(|| scene.grid.clone());
-        let scale = std::f64::consts::PI / scene.white(&grid)[1];
+        let scale = std::f64::consts::PI / scene.white().xyz[1];
         grid.weights(scene.observer).map(|list| list.into_iter().map(|weight| weight * scale).collect())
     }
 }

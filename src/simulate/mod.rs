@@ -35,6 +35,7 @@ mod spectral;
 mod trace;
 mod transport;
 mod vector;
+mod white;
 
 pub use camera::{Camera, NoCamera, Projection};
 pub use choice::Choice;
@@ -45,8 +46,9 @@ pub use grid::{Grid, NoGrid};
 pub use material::{Material, NoMaterial};
 pub use picture::{Kept, Layer, NoPicture, Picture, Watch};
 pub use plan::{Bound, Decision, Plan, bound, plan};
-pub use reradiate::{NoProduct, reradiate};
+pub use reradiate::{NoProduct, Real, reradiate};
 pub use scene::{Body, Bounces, NotDrawn, Scene};
 pub use shape::{Ball, Cuboid, Mesh, NoMesh, Plane, Rectangle, Shape};
 pub use source::{Place, Source};
 pub use spectral::{NoColours, Spectral};
+pub use white::WhiteOf;

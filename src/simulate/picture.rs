@@ -95,7 +95,7 @@ impl Prepared {
     pub(super) fn new(scene: &Scene, step_nm: f64) -> Result<Self, NoGrid> {
         let grid = if step_nm == scene.grid.step() { scene.grid.clone() } else { scene.grid.in_steps_of(step_nm)? };
         // White is that of the scene, whatever the steps of a plan.
-        let white = scene.white(&scene.grid);
+        let white = scene.white().xyz;
         let scale = 1.0 / white[1];
         let weights = grid.weights(scene.observer).map(|list| list.into_iter().map(|weight| weight * scale).collect());
         let materials = scene.materials.iter().map(|material| material.on(&grid)).collect();
@@ -224,7 +224,7 @@ pub(super) fn film_place(scene: &Scene, column: usize, row: usize) -> (f64, f64)
 }
 
 /// More light than falls in may be shown, but must not go round.
-fn may_bounce(scene: &Scene, choice: &Choice, prepared: &Prepared) -> Result<(), NotDrawn> {
+pub(super) fn may_bounce(scene: &Scene, choice: &Choice, prepared: &Prepared) -> Result<(), NotDrawn> {
     let bounces = choice.has(Effect::Interreflection) && choice.bounces != super::scene::Bounces::Most(0);
     if !bounces
         || matches!(scene.bodies.as_slice(), [only] if only.shape.is_convex() && !only.shape.holds(scene.camera.place))

@@ -64,8 +64,11 @@ pub enum NotDrawn {
     /// A material.
     #[error(transparent)]
     Material(#[from] NoMaterial),
-    /// None of the lights reaches the eye.
-    #[error("the lights of the scene have a Y of {0}; expected one above 0 between 360 and 780 nm")]
+    /// Nothing can be seen.
+    #[error(
+        "the lights of the scene make a white of Y {0}; expected a light above 0 at the wavelengths of the scene, and of these some \
+         between 360 and 780 nm"
+    )]
     Dark(f64),
     /// Too many.
     #[error("{count} {what}; expected 1 to {MOST}")]
@@ -135,18 +138,6 @@ impl Scene {
         })
     }
 
-    /// The colour of a perfect diffuser that faces each light, all together, by these weights: what counts as white.
-    pub(super) fn white(&self, grid: &Grid) -> [f64; 3] {
-        let weights = grid.weights(self.observer);
-        let mut white = [0.0; 3];
-        for source in &self.sources {
-            for (white, weights) in white.iter_mut().zip(&weights) {
-                *white += weights.iter().zip(grid.spectrum(&source.light)).map(|(weight, e)| weight * e).sum::<f64>();
-            }
-        }
-        white
-    }
-
     /// Looks whether it can be drawn.
     ///
     /// # Errors
@@ -160,7 +151,7 @@ impl Scene {
         for material in &self.materials {
             material.check()?;
         }
-        let white = self.white(&self.grid)[1];
+        let white = self.white().xyz[1];
         if !(white > 0.0 && white.is_finite()) {
             return Err(NotDrawn::Dark(white));
         }

@@ -6,8 +6,10 @@ use miette::miette;
 
 use crate::cli::exit::{CommandResult, Outcome};
 use crate::cli::output::{print_json, print_text};
-use crate::cli::scene_source;
-use crate::simulate::{Plan, Scene, plan};
+use crate::cli::progress::watched;
+use crate::cli::scene_source::{self, no_picture};
+use crate::simulate::document::Resolved;
+use crate::simulate::{Plan, plan};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -42,17 +44,17 @@ pub(crate) struct Tolerance {
 
 impl Tolerance {
     /// The plan of a scene.
-    pub(crate) fn plan(self, scene: &Scene) -> Result<Plan, miette::Report> {
+    pub(crate) fn plan(self, place: &str, resolved: &Resolved) -> Result<Plan, miette::Report> {
         if !(self.max_delta_e >= 0.0 && self.max_delta_e.is_finite()) {
             return Err(miette!("--max-delta-e {}: expected a number of 0 or more", self.max_delta_e));
         }
-        plan(scene, self.max_delta_e).map_err(|error| miette!("{error}"))
+        watched("planning", || plan(&resolved.scene, self.max_delta_e)).map_err(|why| no_picture(place, resolved, &why))
     }
 }
 
 pub(crate) fn run(arguments: &Arguments) -> CommandResult {
     let loaded = scene_source::load(&arguments.scene)?;
-    let found = arguments.tolerance.plan(&loaded.resolved.scene)?;
+    let found = arguments.tolerance.plan(&arguments.scene.display().to_string(), &loaded.resolved)?;
     if arguments.json {
         print_json("bbrf:plan:1", &found)?;
     } else {

@@ -12,8 +12,8 @@ use super::command::donaldson::{light_source, spectrum_source};
 use super::output::print_message;
 use crate::donaldson::Light;
 use crate::quantity::QuantityKind;
-use crate::simulate::Material;
 use crate::simulate::document::{Corners, Library, Points, Resolved, SceneDocument, Source};
+use crate::simulate::{Material, NoPicture};
 
 /// Most bytes of a description.
 const MOST_BYTES: u64 = 16 << 20;
@@ -43,6 +43,14 @@ pub(crate) fn load(path: &Path) -> Result<Loaded, miette::Report> {
     resolved.remarks.iter().for_each(|remark| print_message(&format!("bbrf: {remark}")));
     resolved.warnings.iter().for_each(|warning| print_message(&format!("bbrf: warning: {warning}")));
     Ok(Loaded { resolved, read: files.read })
+}
+
+/// Why a scene has no picture, as it is told.
+pub(crate) fn no_picture(place: &str, resolved: &Resolved, why: &NoPicture) -> miette::Report {
+    if let Some(at) = resolved.blamed(why) {
+        return miette!("{at}");
+    }
+    miette!("{place}: {why}")
 }
 
 /// The files beside a scene.

@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 use super::description::one;
 use super::place::{NotAScene, Places, Step};
 use super::resolve::Resolver;
+use crate::donaldson::Light;
 use crate::quantity::QuantityKind;
 use crate::simulate::source::{Place, Source};
 use crate::simulate::vector::unit;
@@ -77,19 +78,22 @@ impl LightSection {
         let strength = with.above_0(&way, "strength", self.strength)?;
         let light = with.library.light(&self.spectrum).map_err(|why| with.error(&way, "spectrum", why))?;
         let light = with.said(&format!("light `{name}`"), light);
+        with.note_negative(&format!("light `{name}`"), light.values());
         let light = if strength == 1.0 { light } else { light.scaled(strength) };
         Ok(Source { name, light, place })
     }
 }
 
 /// Numbers of different units have no sum: where lights differ, their author says by `strength` what one is beside the other. A 1
-/// that is written is such a word, one that is left out is none.
-pub(super) fn check_units(sources: &[Source], places: &Places<'_>) -> Result<(), NotAScene> {
+/// that is written is such a word, one that is left out is none. The lights of the CIE share a unit, of which a lamp in counts knows
+/// nothing.
+pub(super) fn check_units(sources: &[Source], spectra: &[String], places: &Places<'_>) -> Result<(), NotAScene> {
     let unwritten = |k: &usize| !places.is_written(&[Step::Key("light"), Step::Item(*k), Step::Key("strength")]);
     let mut loose = (0..sources.len()).filter(unwritten);
     let Some(first) = loose.next() else { return Ok(()) };
     let unit = |k: usize| match sources[k].light.kind() {
-        QuantityKind::RelativeSpectrum => "a relative unit",
+        QuantityKind::RelativeSpectrum if Light::named(&spectra[k]).is_some() => "the relative unit of the CIE",
+        QuantityKind::RelativeSpectrum => "a relative unit of its own",
         QuantityKind::Unstated => "a unit that is not stated",
         kind => kind.unit(),
     };

@@ -66,6 +66,7 @@ impl MaterialSection {
             let points = with.said(&format!("material `{}`", self.name), points);
             let (nm, values): (Vec<f64>, Vec<f64>) = points.into_iter().unzip();
             with.note_range(&format!("the reflectance of material `{}`", self.name), &nm);
+            with.note_negative(&format!("the reflectance of material `{}`", self.name), &values);
             let why = "found fewer than two ascending wavelengths; expected a reflectance over a range";
             lambertian(&nm, values).ok_or_else(|| with.error(&way, "reflectance", why))?
         } else {

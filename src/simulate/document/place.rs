@@ -117,6 +117,7 @@ impl<'a> Places<'a> {
                     .try_for_each(|(name, inner)| self.check_numbers(&format!("{key}.{}", name.get_ref()), inner));
             }
             DeValue::Array(items) => return items.iter().try_for_each(|inner| self.check_numbers(key, inner)),
+            // Counts have limits of their own, which are said where they are read.
             DeValue::Integer(number) if key != SEED && number.radix() == 10 => number.as_str(),
             DeValue::Float(number) => number.as_str(),
             _ => return Ok(()),

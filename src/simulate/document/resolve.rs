@@ -5,18 +5,22 @@ use std::collections::HashSet;
 use super::description::{CameraSection, FilmSection, SceneDocument, View};
 use super::place::{NotAScene, Places, Step};
 use crate::donaldson::Light;
-use crate::simulate::camera::{Camera, Projection};
+use crate::simulate::camera::{Camera, NoCamera, Projection};
 use crate::simulate::film::LONGEST_SIDE;
 use crate::simulate::grid::Grid;
 use crate::simulate::material::Material;
-use crate::simulate::picture::Kept;
-use crate::simulate::scene::{Body, MOST, Scene};
+use crate::simulate::picture::{Kept, NoPicture};
+use crate::simulate::scene::{Body, MOST, NotDrawn, Scene};
 use crate::simulate::vector::{Vector, unit};
+use crate::simulate::white::WhiteOf;
 
 /// Most pixels of an image.
 const MOST_PIXELS: usize = 1 << 28;
 /// Most samples of a pixel.
 const MOST_SAMPLES: u32 = 1 << 20;
+
+/// What an eye sees nearly all of its light in, nm: outside is a thousandth of Y under daylight.
+const VISIBLE_NM: [f64; 2] = [400.0, 700.0];
 
 /// Which material of which file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -81,6 +85,18 @@ pub struct Resolved {
     pub remarks: Vec<String>,
     /// What is missing, in words.
     pub warnings: Vec<String>,
+    /// Where each material stands in the description.
+    materials_at: Vec<NotAScene>,
+}
+
+impl Resolved {
+    /// Why there is no picture, with the place in the description that is to blame, where one is.
+    #[must_use]
+    pub fn blamed(&self, why: &NoPicture) -> Option<NotAScene> {
+        let NoPicture::Scene(NotDrawn::Brighter { material, .. }) = why else { return None };
+        let number = self.scene.materials.iter().position(|one| one.name == *material)?;
+        Some(NotAScene { problem: why.to_string(), ..self.materials_at.get(number)?.clone() })
+    }
 }
 
 /// On the way to a scene.
@@ -89,6 +105,7 @@ pub(super) struct Resolver<'a, 'text> {
     places: &'a Places<'text>,
     grid: Grid,
     remarks: Vec<String>,
+    warnings: Vec<String>,
 }
 
 pub(super) fn resolve(
@@ -106,7 +123,7 @@ pub(super) fn resolve(
             return Err(places.error(&[Step::Key(key)], format!("found {count}; expected 1 to {MOST}")));
         }
     }
-    let mut with = Resolver { library, places, grid, remarks: Vec::new() };
+    let mut with = Resolver { library, places, grid, remarks: Vec::new(), warnings: Vec::new() };
     let mut names = Names::new("material", places);
     for (k, material) in materials.iter().enumerate() {
         names.take(k, &material.name)?;
@@ -119,12 +136,13 @@ pub(super) fn resolve(
         .collect::<Result<Vec<Material>, NotAScene>>()?;
     let mut names = Names::new("light", places);
     let mut sources = Vec::with_capacity(lights.len());
+    let spectra: Vec<String> = lights.iter().map(|light| light.spectrum.clone()).collect();
     for (k, light) in lights.into_iter().enumerate() {
         let name = light.name.clone().unwrap_or_else(|| format!("light {}", k + 1));
         names.take(k, &name)?;
         sources.push(light.resolve(Step::Item(k), name, &mut with)?);
     }
-    super::lights::check_units(&sources, places)?;
+    super::lights::check_units(&sources, &spectra, places)?;
     let mut names = Names::new("object", places);
     let mut bodies = Vec::with_capacity(objects.len());
     for (k, object) in objects.into_iter().enumerate() {
@@ -136,7 +154,7 @@ pub(super) fn resolve(
         })?;
         bodies.push(Body { name, shape: object.resolve(Step::Item(k), &mut with)?, material });
     }
-    let Resolver { grid, remarks, .. } = with;
+    let Resolver { grid, mut remarks, mut warnings, .. } = with;
     let size = (film.width, film.height);
     let scene = Scene {
         bodies,
@@ -151,8 +169,27 @@ pub(super) fn resolve(
         seed: film.seed,
     };
     scene.check().map_err(|why| places.error(&[Step::Key("light")], why.to_string()))?;
-    let warnings = super::super::losses::of(&scene);
-    Ok(Resolved { scene, kept: film.kept, exposure: film.exposure, remarks, warnings })
+    if scene.white_of() == WhiteOf::Daylight {
+        remarks.push(
+            "the lights have no colour that an eye adapts to: white is a perfect diffuser under D65 of the same irradiance".to_owned(),
+        );
+    }
+    let is_used = |k: &usize| scene.bodies.iter().any(|body| body.material == *k);
+    let unused = (0..scene.materials.len()).filter(|k| !is_used(k));
+    remarks.extend(unused.map(|k| format!("material `{}` is on no object", scene.materials[k].name)));
+    let nm = scene.grid.nm();
+    let (first, last) = (nm[0], nm[nm.len() - 1]);
+    if first > VISIBLE_NM[0] || last < VISIBLE_NM[1] {
+        warnings.push(format!(
+            "the wavelengths of the scene are {first} to {last} nm: colours are of that part of the light alone; expected {} to {} \
+             for what an eye sees",
+            VISIBLE_NM[0], VISIBLE_NM[1]
+        ));
+    }
+    warnings.extend(super::super::losses::of(&scene));
+    let at = |k: usize| places.error(&[Step::Key("material"), Step::Item(k)], "");
+    let materials_at = (0..scene.materials.len()).map(at).collect();
+    Ok(Resolved { scene, kept: film.kept, exposure: film.exposure, remarks, warnings, materials_at })
 }
 
 fn check_film(film: &FilmSection, places: &Places<'_>) -> Result<(), NotAScene> {
@@ -189,8 +226,15 @@ fn look(camera: &CameraSection, places: &Places<'_>) -> Result<Camera, NotAScene
             return Err(wrong("projection", "found \"perspective\"; expected `width_deg` beside it, and no `width`"));
         }
     };
-    Camera::new(camera.from, camera.at, camera.up, projection)
-        .map_err(|why| places.error(&[Step::Key("camera")], why.to_string()))
+    Camera::new(camera.from, camera.at, camera.up, projection).map_err(|why| {
+        let key = match (&why, projection) {
+            (NoCamera::Direction, _) => "at",
+            (NoCamera::Up, _) => "up",
+            (NoCamera::Width(_), Projection::Orthographic { .. }) => "width",
+            (NoCamera::Width(_), Projection::Perspective { .. }) => "width_deg",
+        };
+        wrong(key, &why.to_string())
+    })
 }
 
 impl Resolver<'_, '_> {
@@ -212,6 +256,17 @@ impl Resolver<'_, '_> {
         if *first > grid[0] || *last < grid[grid.len() - 1] {
             let sentence = format!("{what} is known from {first} to {last} nm; outside it is that of the nearest");
             self.remarks.push(sentence);
+        }
+    }
+
+    /// That noise, or a mistake, lies below 0: it is drawn as it is.
+    pub(super) fn note_negative(&mut self, what: &str, values: &[f64]) {
+        let below = values.iter().filter(|value| **value < 0.0);
+        let (count, least) = below.fold((0, 0.0_f64), |(count, least), value| (count + 1, least.min(*value)));
+        if count > 0 {
+            let all = values.len();
+            self.warnings
+                .push(format!("{what} has {count} of {all} values below 0, the least {least}: drawn as they are"));
         }
     }
 

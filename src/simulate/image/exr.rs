@@ -16,8 +16,15 @@ use exr::prelude::{
 use super::Notes;
 use crate::quantity::named;
 
-/// The unit that the public tools know; radiance is per nanometre nowhere in the layout.
-const EMISSIVE_UNITS: &str = "W.m^-2.sr^-1";
+named! {
+    /// What spectra are in: the attribute `emissiveUnits`.
+    Radiance, "radiance" {
+        /// The unit that the public tools know; radiance is per nanometre nowhere in the layout.
+        Absolute = "W.m^-2.sr^-1",
+        /// That of lights of which only the form is known.
+        Relative = "relative",
+    }
+}
 
 named! {
     /// What R, G and B of all layers are.
@@ -87,13 +94,13 @@ pub fn spectral_channel(nm: f64) -> String {
 pub fn write_exr(
     (width, height): (usize, usize),
     layers: &[Layer],
-    primaries: Primaries,
+    (primaries, radiance): (Primaries, Radiance),
     notes: &Notes,
     out: impl Write + Seek,
 ) -> Result<(), NoExr> {
     check(width, height, layers)?;
     let size = Vec2(width, height);
-    let parts: Vec<Part> = layers.iter().map(|layer| part(size, layer, notes)).collect();
+    let parts: Vec<Part> = layers.iter().map(|layer| part(size, layer, radiance, notes)).collect();
     let mut attributes = ImageAttributes::new(IntegerBounds::from_dimensions(size));
     attributes.chromaticities = match primaries {
         Primaries::Xyz => Some(Chromaticities {
@@ -117,7 +124,7 @@ pub fn write_exr(
 
 type Part = exr::prelude::Layer<AnyChannels<FlatSamples>>;
 
-fn part(size: Vec2<usize>, layer: &Layer, notes: &Notes) -> Part {
+fn part(size: Vec2<usize>, layer: &Layer, radiance: Radiance, notes: &Notes) -> Part {
     let mut attributes = LayerAttributes::named(layer.name.as_str());
     attributes.software_name = Some(Text::from("bbrf"));
     if !notes.is_empty() {
@@ -128,7 +135,7 @@ fn part(size: Vec2<usize>, layer: &Layer, notes: &Notes) -> Part {
     // The encoder keeps attributes that it does not know in the order of a table with random seeds: one at most in a table, or
     // the same image would not have the same bytes.
     if is_spectral(layer) {
-        attributes.other.insert(Text::from("emissiveUnits"), AttributeValue::Text(Text::from(EMISSIVE_UNITS)));
+        attributes.other.insert(Text::from("emissiveUnits"), AttributeValue::Text(Text::from(radiance.name())));
     }
     let channels = layer
         .channels

@@ -25,6 +25,10 @@ pub struct OutOfGamut {
     pub gamut: Gamut,
     /// Pixels with a channel below 0 or above 1 by more than half a step of 16 bits.
     pub pixels: usize,
+    /// Of these with a channel above 1: a lower exposure shows them.
+    pub brighter: usize,
+    /// Of these with a channel below 0: purer than the display's primaries, at any exposure.
+    pub purer: usize,
     /// All pixels of the image.
     pub of: usize,
     /// Most by which a linear channel lies below 0; white is 1.
@@ -37,7 +41,7 @@ pub struct OutOfGamut {
 
 impl OutOfGamut {
     pub(super) fn new(gamut: Gamut, of: usize) -> Self {
-        Self { gamut, pixels: 0, of, below: 0.0, above: 0.0, undefined: 0 }
+        Self { gamut, pixels: 0, brighter: 0, purer: 0, of, below: 0.0, above: 0.0, undefined: 0 }
     }
 
     /// The colour as it is shown, from 0 to 1, and counted.
@@ -50,6 +54,8 @@ impl OutOfGamut {
         let (below, above) = (most(linear.map(|value| -value)), most(linear.map(|value| value - 1.0)));
         (self.below, self.above) = (self.below.max(below), self.above.max(above));
         self.pixels += usize::from(below.max(above) > ROUNDING);
+        self.brighter += usize::from(above > ROUNDING);
+        self.purer += usize::from(below > ROUNDING);
         let shown = match self.gamut {
             Gamut::Clip => linear,
             Gamut::Desaturate => paler(linear, display.luminance(linear)),

@@ -8,9 +8,10 @@ mod gamut;
 mod png;
 mod srgb;
 
-pub use exr::{Channel, Layer, NoExr, Primaries, spectral_channel, write_exr};
+pub use exr::{Channel, Layer, NoExr, Primaries, Radiance, spectral_channel, write_exr};
 pub use gamut::{Gamut, OutOfGamut};
 pub use png::{Depth, NoPng, Png};
+pub(in crate::simulate) use srgb::cones;
 pub use srgb::{NoDisplay, Srgb};
 
 /// What stands beside the pixels: names and texts, as the plan, the seed and the conventions.

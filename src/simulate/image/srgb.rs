@@ -43,6 +43,11 @@ fn xyz([x, y]: [f64; 2]) -> Vector3<f64> {
     Vector3::new(x / y, 1.0, (1.0 - x - y) / y)
 }
 
+/// How the cones of Bradford answer to a colour.
+pub(in crate::simulate) fn cones(xyz: [f64; 3]) -> [f64; 3] {
+    (matrix(BRADFORD) * Vector3::from(xyz)).into()
+}
+
 impl Srgb {
     /// `white` is the scene's, in the unit of its pixels: times `exposure` it is the display's.
     ///

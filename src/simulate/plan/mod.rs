@@ -22,7 +22,7 @@ use super::alone::is_alone;
 use super::choice::Choice;
 use super::effect::Effect;
 use super::grid::NoGrid;
-use super::picture::NoPicture;
+use super::picture::{NoPicture, may_bounce};
 use super::scene::{Bounces, Scene};
 
 /// Steps of the wavelength that are tried, as multiples of the scene's.
@@ -82,6 +82,7 @@ pub fn plan(scene: &Scene, max_delta_e: f64) -> Result<Plan, NoPicture> {
     let alone: Vec<Bound> = Effect::ALL.iter().map(|effect| full.bound(&everything.without(*effect))).collect();
     let choice = if max_delta_e > 0.0 { cheapest(scene, &full, base, &alone, max_delta_e)? } else { base };
     let choice = if choice.bounces == Bounces::Most(0) { choice.without(Effect::Interreflection) } else { choice };
+    may_bounce(scene, &choice, &full.prepared)?;
     let mut bound = full.bound(&choice);
     if max_delta_e > 0.0 && choice != base {
         // That has been proven, by a closer look.

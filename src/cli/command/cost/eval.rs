@@ -10,6 +10,7 @@ use crate::cli::command::donaldson::material;
 use crate::cli::exit::CommandResult;
 use crate::cli::model_source::load_complete;
 use crate::cli::output::print_message;
+use crate::cli::progress::watched;
 use crate::cost::{EvalLadder, ModelLadder, eval_ladder, model_ladder};
 use crate::donaldson::{Luminescence, Observer};
 use crate::import::read_geometries;
@@ -70,7 +71,8 @@ fn of_matrix(arguments: &Arguments) -> CommandResult {
         observer: *observer,
         count: *count as f64,
     };
-    let mut ladder = eval_ladder(&asked, common.patience()).map_err(|error| miette!("{file}: {error}"))?;
+    let mut ladder =
+        watched("measuring", || eval_ladder(&asked, common.patience())).map_err(|error| miette!("{file}: {error}"))?;
     ladder.command = words(&["bbrf", "donaldson", "predict", file]);
     ladder.command.extend(lights.words());
     if *observer != Observer::Two {
@@ -102,7 +104,8 @@ fn of_model(arguments: &Arguments, name: &str, geometry: &Path) -> CommandResult
         geometries: &geometries,
         count: *count as f64,
     };
-    let mut ladder = model_ladder(&asked, common.patience()).map_err(|error| miette!("{name}: {error}"))?;
+    let mut ladder =
+        watched("measuring", || model_ladder(&asked, common.patience())).map_err(|error| miette!("{name}: {error}"))?;
     ladder.command = words(&["bbrf", "eval", "--model", name, "--geometry", &geometry.display().to_string()]);
     ladder.command.extend(lights.words());
     common.finish(ladder)

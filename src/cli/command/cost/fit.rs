@@ -8,6 +8,7 @@ use super::{Common, words};
 use crate::cli::command::fit::question::{Question, hint};
 use crate::cli::exit::CommandResult;
 use crate::cli::opened::open;
+use crate::cli::progress::watched;
 use crate::cost::fit_ladder;
 
 /// What the search and the tolerance of a fit cost, on your own scan
@@ -29,8 +30,10 @@ pub(super) fn run(arguments: &Arguments) -> CommandResult {
     common.check([file.clone()])?;
     let document = open(file)?.document;
     let measurement = question.choose(&document, file)?;
-    let mut ladder = fit_ladder(&document, measurement, &question.options(String::new()), common.patience())
-        .map_err(|error| miette!("{}: {error}{}", file.display(), hint(&error)))?;
+    let mut ladder = watched("measuring", || {
+        fit_ladder(&document, measurement, &question.options(String::new()), common.patience())
+    })
+    .map_err(|error| miette!("{}: {error}{}", file.display(), hint(&error)))?;
     ladder.command = words(&["bbrf", "fit", &file.display().to_string()]);
     ladder.command.extend(question.words());
     common.finish(ladder)

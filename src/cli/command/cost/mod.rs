@@ -52,10 +52,10 @@ enum Task {
 #[derive(Debug, clap::Args)]
 struct Common {
     /// Answer with the cheapest rung whose error is at most this
-    #[arg(long, value_name = "ERROR", value_parser = not_negative)]
+    #[arg(long, value_name = "ERROR", value_parser = not_negative, allow_negative_numbers = true)]
     max_error: Option<f64>,
     /// Answer with the most accurate rung that takes at most so many seconds
-    #[arg(long, value_name = "SECONDS", value_parser = not_negative)]
+    #[arg(long, value_name = "SECONDS", value_parser = not_negative, allow_negative_numbers = true)]
     budget: Option<f64>,
     /// Seconds that the repeats of a rung may take; fewer where the median is known earlier
     #[arg(long, value_name = "SECONDS", default_value_t = Patience::default().seconds, value_parser = not_negative)]
@@ -102,9 +102,13 @@ impl Common {
         let Some(output) = &self.output else { return Ok(()) };
         refuse_overwriting(output, read)?;
         match extension(output).as_str() {
-            "svg" | "png" => Ok(()),
-            other => Err(miette!("-o: a file name that ends in `{other}`; expected .svg or .png")),
+            "svg" | "png" => {}
+            other => return Err(miette!("-o: a file name that ends in `{other}`; expected .svg or .png")),
         }
+        let folder = output.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        tempfile::tempfile_in(folder)
+            .map(drop)
+            .map_err(|error| miette!("{}: no file can be written there: {error}", output.display()))
     }
 
     /// Prints and draws a ladder, and answers.

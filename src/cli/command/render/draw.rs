@@ -7,8 +7,9 @@ use std::time::Duration;
 use miette::miette;
 
 use crate::cli::progress::bar;
+use crate::cli::scene_source::no_picture;
 use crate::simulate::document::Resolved;
-use crate::simulate::{Choice, Kept, Layer, NoPicture, Picture, Watch};
+use crate::simulate::{Choice, Kept, Layer, Picture, Watch};
 
 /// Most numbers of a picture: 8 GiB, and as much again while it is put together.
 const MOST_NUMBERS: usize = 1 << 31;
@@ -44,10 +45,7 @@ pub(super) fn draw(
         is_done.store(true, Ordering::Relaxed);
         drawn
     });
-    drawn.map_err(|why| match why {
-        NoPicture::Cancelled(_) => miette!("{place}: {why}"),
-        _ => miette!(help = "`bbrf schema scene` says what a scene may hold", "{place}: {why}"),
-    })
+    drawn.map_err(|why| no_picture(place, resolved, &why))
 }
 
 fn follow(watch: &Watch, is_done: &AtomicBool, rows: usize) {

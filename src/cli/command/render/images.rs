@@ -6,9 +6,12 @@ use miette::miette;
 
 use super::LAYERS;
 use super::result::{Brightest, Drawn};
+use crate::quantity::QuantityKind;
 use crate::simulate::document::Resolved;
-use crate::simulate::image::{Channel, Depth, Gamut, Layer as Part, Png, Primaries, Srgb, spectral_channel, write_exr};
-use crate::simulate::{Film, Kept, Layer, Picture};
+use crate::simulate::image::{
+    Channel, Depth, Gamut, Layer as Part, Png, Primaries, Radiance, Srgb, spectral_channel, write_exr,
+};
+use crate::simulate::{Film, Kept, Layer, Picture, Source};
 
 /// Files by name.
 pub(super) type Files = Vec<(String, Vec<u8>)>;
@@ -37,7 +40,7 @@ pub(super) fn encode(
         let film = picture.film(scene, *layer).map_err(|error| miette!("{error}"))?;
         let (bytes, out_of_gamut) = png.encode(&film, &notes).map_err(|error| miette!("{error}"))?;
         let name = format!("{layer}.png");
-        drawn.push(Drawn::new(*layer, name.clone(), &out_of_gamut, mean(&film), brightest(&film)));
+        drawn.push(Drawn::new(*layer, name.clone(), (&out_of_gamut, resolved.exposure), mean(&film), brightest(&film)));
         files.push((name, bytes));
         parts.push(part(picture, *layer, planes, &film, &linear));
     }
@@ -45,8 +48,10 @@ pub(super) fn encode(
         let channels = vec![Channel { name: "Y".to_owned(), values: picture.noise.clone() }];
         parts.push(Part { name: NOISE.to_owned(), channels });
     }
+    let is_absolute = |source: &Source| source.light.kind() == QuantityKind::SpectralIrradiance;
+    let radiance = if scene.sources.iter().all(is_absolute) { Radiance::Absolute } else { Radiance::Relative };
     let mut exr = Cursor::new(Vec::new());
-    write_exr((picture.width, picture.height), &parts, Primaries::Srgb, &notes, &mut exr)
+    write_exr((picture.width, picture.height), &parts, (Primaries::Srgb, radiance), &notes, &mut exr)
         .map_err(|error| miette!("{error}"))?;
     files.push((LAYERS.to_owned(), exr.into_inner()));
     Ok((files, drawn))

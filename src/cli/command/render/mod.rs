@@ -109,10 +109,11 @@ pub(crate) fn run(arguments: &Arguments) -> CommandResult {
         refuse_overwriting(&arguments.output.join(name), loaded.read.clone())?;
     }
     let resolved = &loaded.resolved;
+    let place = arguments.scene.display().to_string();
     let plan = match arguments.everything {
         true => None,
         false => {
-            let plan = arguments.tolerance.plan(&resolved.scene)?;
+            let plan = arguments.tolerance.plan(&place, resolved)?;
             Some(if arguments.by_pixel { plan.by_pixel() } else { plan })
         }
     };
@@ -120,7 +121,6 @@ pub(crate) fn run(arguments: &Arguments) -> CommandResult {
         Some(plan) => plan.choice,
         None => Choice::everything(resolved.scene.bounces, resolved.scene.grid.step()),
     };
-    let place = arguments.scene.display().to_string();
     may_be_written(&arguments.output)?;
     let mut picture = draw::draw(&place, resolved, &choice, &layers, arguments.threads)?;
     if arguments.layers.is_empty() {
@@ -131,6 +131,7 @@ pub(crate) fn run(arguments: &Arguments) -> CommandResult {
     }
     let (files, drawn) = images::encode(&picture, resolved, arguments.gamut, arguments.depth)?;
     let result = RenderResult::new(&place, resolved, plan, &picture, drawn);
+    result.said_after(&resolved.warnings).for_each(|warning| print_message(&format!("bbrf: warning: {warning}")));
     write(&arguments.output, &files, &result)?;
     if arguments.json {
         print_json(SCHEMA, &result)?;
@@ -143,7 +144,10 @@ pub(crate) fn run(arguments: &Arguments) -> CommandResult {
 /// Looks before the work whether there is, or may be, such a folder.
 fn may_be_written(folder: &Path) -> Result<(), miette::Report> {
     if folder.is_dir() {
-        return Ok(());
+        // A file that is gone at once: a folder may be there and take none.
+        return tempfile::tempfile_in(folder)
+            .map(drop)
+            .map_err(|error| miette!("{}: expected a folder that files can be written to: {error}", folder.display()));
     }
     // Made and taken away again: nothing stays of a work that is interrupted.
     std::fs::create_dir_all(folder)

@@ -9,7 +9,7 @@ use serde::Serialize;
 use super::{LAYERS, RECORD};
 use crate::simulate::document::Resolved;
 use crate::simulate::image::{Gamut, OutOfGamut};
-use crate::simulate::{Bounces, Kept, Layer, Picture, Plan};
+use crate::simulate::{Bounces, Kept, Layer, Picture, Plan, Scene, WhiteOf};
 
 /// What `render.json` and `--json` hold: the same for the same scene, seed and samples.
 #[derive(Debug, Serialize, JsonSchema)]
@@ -39,8 +39,10 @@ pub(crate) struct RenderResult {
     plan: Option<Plan>,
     /// What the PNGs multiply the light with.
     exposure: f64,
-    /// X, Y and Z of a perfect diffuser that faces all lights: what all colours here are in, Y being 1.
+    /// X, Y and Z of white: what all colours here are in, Y being 1.
     white: [f64; 3],
+    /// What white is.
+    white_of: WhiteOf,
     /// The layers.
     layers: Vec<Drawn>,
     /// The file with all layers in single precision: linear light in the primaries of sRGB, white being 1, without the exposure; the
@@ -87,6 +89,12 @@ struct Outside {
     gamut: Gamut,
     /// How many pixels.
     pixels: usize,
+    /// Of these with a channel above 1: a lower exposure shows them.
+    brighter: usize,
+    /// Of these with a channel below 0: purer than the display's primaries, at any exposure.
+    purer: usize,
+    /// The exposure at which no channel lies above 1.
+    exposure_for_all: f64,
     /// Most by which a linear channel lies below 0; white is 1.
     below: f64,
     /// Most by which a linear channel lies above 1.
@@ -114,10 +122,37 @@ impl Noise {
 }
 
 impl Drawn {
-    pub(super) fn new(layer: Layer, file: String, outside: &OutOfGamut, mean: [f64; 3], brightest: Brightest) -> Self {
-        let OutOfGamut { gamut, pixels, below, above, undefined, .. } = *outside;
-        Self { layer, file, mean, brightest, out_of_gamut: Outside { gamut, pixels, below, above, undefined } }
+    pub(super) fn new(
+        layer: Layer,
+        file: String,
+        (outside, exposure): (&OutOfGamut, f64),
+        mean: [f64; 3],
+        brightest: Brightest,
+    ) -> Self {
+        let OutOfGamut { gamut, pixels, brighter, purer, below, above, undefined, .. } = *outside;
+        // To two digits, and not above.
+        let exact = exposure / (1.0 + above);
+        let place = 10.0_f64.powf(1.0 - exact.log10().floor());
+        let exposure_for_all = if above > 0.0 { (exact * place).floor() / place } else { exposure };
+        let out_of_gamut = Outside { gamut, pixels, brighter, purer, exposure_for_all, below, above, undefined };
+        Self { layer, file, mean, brightest, out_of_gamut }
     }
+}
+
+/// Why there may be nothing to see.
+fn black(scene: &Scene, layers: &[Drawn]) -> Option<String> {
+    let total = layers.iter().find(|one| one.layer == Layer::Total)?;
+    if total.brightest.xyz[1] > 0.0 {
+        return None;
+    }
+    let around = scene.bodies.iter().find(|body| body.shape.holds(scene.camera.place()));
+    let why = match around {
+        Some(body) => format!("the camera is inside `{}`", body.name),
+        None => "no body is in view, or no light falls on what is".to_owned(),
+    };
+    Some(format!(
+        "the picture is black: {why}; look at `from`, `at` and `width` of the camera, and where the lights are"
+    ))
 }
 
 impl RenderResult {
@@ -130,6 +165,8 @@ impl RenderResult {
     ) -> Self {
         let scene = &resolved.scene;
         let nm = &picture.nm;
+        let mut warnings = resolved.warnings.clone();
+        warnings.extend(black(scene, &layers));
         let (first, last) = (nm.first().copied().unwrap_or_default(), nm.last().copied().unwrap_or_default());
         Self {
             program_version: env!("CARGO_PKG_VERSION"),
@@ -145,12 +182,18 @@ impl RenderResult {
             plan,
             exposure: resolved.exposure,
             white: picture.white,
+            white_of: scene.white_of(),
             layers,
             exr: LAYERS,
             noise: Noise::of(picture),
-            warnings: resolved.warnings.clone(),
+            warnings,
             remarks: resolved.remarks.clone(),
         }
+    }
+
+    /// Warnings that were not there when the scene was read.
+    pub(super) fn said_after(&self, before: &[String]) -> impl Iterator<Item = &String> {
+        self.warnings.iter().skip(before.len())
     }
 
     pub(super) fn text(&self, folder: &Path) -> String {
@@ -159,23 +202,20 @@ impl RenderResult {
             let path = folder.join(&one.file);
             let outside = &one.out_of_gamut;
             // Writing into a text cannot fail.
-            let _ = write!(
-                text,
-                "{}: mean Y {:.6}, brightest {:.4} at column {}, row {}",
-                path.display(),
-                one.mean[1],
-                one.brightest.xyz[1],
-                one.brightest.column,
-                one.brightest.row
-            );
+            let _ = write!(text, "{}: mean Y {:.6}", path.display(), one.mean[1]);
+            let Brightest { column, row, xyz } = one.brightest;
+            let _ = match xyz[1] {
+                0.0 => write!(text, ", black"),
+                most => write!(text, ", brightest {most:.4} at column {column}, row {row}"),
+            };
             let done = if outside.gamut == Gamut::Clip { "clipped" } else { "paler than they are" };
-            let _ = match outside.pixels {
-                0 => writeln!(text),
-                pixels => writeln!(
-                    text,
-                    "; {pixels} of {} pixels are no colours of sRGB and {done}",
-                    self.width * self.height
-                ),
+            let many = |count: usize, what: &str| (count > 0).then(|| format!("{count} {what}"));
+            let brighter = format!("too bright for sRGB (exposure {} shows them)", outside.exposure_for_all);
+            let parts = [many(outside.brighter, &brighter), many(outside.purer, "purer than sRGB")];
+            let parts = parts.into_iter().flatten().collect::<Vec<_>>().join(", ");
+            let _ = match parts.as_str() {
+                "" => writeln!(text),
+                _ => writeln!(text, "; of {} pixels {parts}: {done}", self.width * self.height),
             };
         }
         let _ = write!(text, "{}", folder.join(self.exr).display());
