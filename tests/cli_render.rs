@@ -311,6 +311,25 @@ fn fluorescence_is_seen_under_a_lamp_that_is_not() {
     assert_eq!(record(&out)["white_of"], "lights");
 }
 
+/// The scene that the README begins with, fewer samples.
+#[test]
+fn the_scene_of_the_readme_is_drawn_from_a_clean_clone() {
+    let folder = tempfile::tempdir().unwrap();
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let room = folder.path().join("room.toml");
+    std::fs::copy(root.join("examples/room.toml"), &room).unwrap();
+    let matrix = root.join("testdata/bispectral/synthetic.BFC");
+    bbrf().arg("import").arg(matrix).arg("-o").arg(folder.path().join("glow.bbrf")).assert().success();
+    bbrf().arg("plan").arg(&room).assert().success().stdout(contains("interreflection   simulate"));
+    let out = folder.path().join("room");
+    bbrf().arg("render").arg(&room).arg("-o").arg(&out).args(["--samples", "2"]).assert().success();
+    let record = record(&out);
+    // The ball lights the wall: what came by way of another body is yellower than the light.
+    let [x, y, z] = [0, 1, 2].map(|c| layer(&record, "interreflection")["mean"][c].as_f64().unwrap());
+    let white = [0, 1, 2].map(|c| record["white"][c].as_f64().unwrap());
+    assert!(y > 0.01 && z / white[2] < 0.8 * y && x > 0.0, "{x} {y} {z}");
+}
+
 #[test]
 fn what_may_not_bounce_is_named_by_its_line_by_plan_and_render_alike() {
     let folder = tempfile::tempdir().unwrap();
