@@ -51,7 +51,12 @@ impl Ladder {
         Some(match found {
             Some((place, rung)) => {
                 let command = self.command_line(rung);
-                let sentence = format!("take `{}`: {}", rung.name, self.figures(rung));
+                let why = match (wish.max_error, self.task) {
+                    (None, _) => "the most accurate within the time",
+                    (_, Task::Storage) => "the smallest file within the error",
+                    _ => "the quickest within the error",
+                };
+                let sentence = format!("take `{}`, {why}: {}", rung.name, self.figures(rung));
                 Answer { rung: Some(place), command: Some(command), sentence }
             }
             None => Answer { rung: None, command: None, sentence: self.why_none(wish) },
@@ -61,7 +66,8 @@ impl Ladder {
     fn figures(&self, rung: &Rung) -> String {
         let error = rung.error.map_or("no error known".to_owned(), |error| format!("error {error:.2e}"));
         let bytes = rung.bytes.map_or(String::new(), |bytes| format!(", {bytes} bytes"));
-        format!("{error}, {:.3e} s{bytes}", rung.seconds())
+        let what = if rung.read_time.is_some() { " to write and to read" } else { "" };
+        format!("{error}, {:.3e} s{what}{bytes}", rung.seconds())
     }
 
     /// What stands in the way, with the nearest rung on either side.
