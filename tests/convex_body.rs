@@ -9,7 +9,7 @@ mod scans;
 mod units;
 
 use bbrf::donaldson::{Extend, Light, Observer};
-use bbrf::simulate::convex::{Colours, Component, Lighting, Renderer, Scene, Sphere, Way, render_dense};
+use bbrf::simulate::convex::{Colours, Component, Lighting, Method, Renderer, Scene, Sphere, render_dense};
 use bbrf::simulate::{Film, Spectral};
 use bbrf::terms::{Denominator, Distribution, TorranceSparrow};
 use scans::Random;
@@ -97,7 +97,7 @@ fn compare(point: bool, size: (usize, usize), seed: u64, count: usize) {
         let scene = scene(&mut random, point, size);
         for component in Component::ALL {
             let way = Renderer::default().render(&scene, *component, &mut fast).unwrap();
-            assert_eq!(way, Way::Lanes, "{scene:?}");
+            assert_eq!(way, Method::Lanes, "{scene:?}");
             Renderer::default().generic().render(&scene, *component, &mut reference).unwrap();
             let (units, fast_value, value) = worst(&fast, &reference);
             assert!(units <= 1, "case {case} {component}: {fast_value:e}, by the terms {value:e}: {scene:?}");
@@ -164,7 +164,7 @@ fn a_specular_term_that_the_fast_way_does_not_cover_is_drawn_by_the_terms_and_sa
         let term = TorranceSparrow { roughness, refractive_index, ..lobe(&mut random) };
         let term = TorranceSparrow { distribution: Distribution::Gaussian, ..term };
         let scene = Scene::new(sphere, Lighting::Directional([0.3, 0.2, 1.0]), colours, term).unwrap();
-        assert_eq!(Renderer::default().render(&scene, Component::Total, &mut film()), Ok(Way::Generic));
+        assert_eq!(Renderer::default().render(&scene, Component::Total, &mut film()), Ok(Method::Generic));
     }
 }
 

@@ -17,7 +17,7 @@ const SAMPLES: [(u32, u32); 4] = [(4, 1), (1, 4), (1, 16), (1, 64)];
 const SURER: u32 = 8;
 
 /// One way to draw a scene.
-struct Way {
+struct Setting {
     name: String,
     knob: &'static str,
     options: Vec<String>,
@@ -41,7 +41,7 @@ pub fn image_ladder(scene: &Scene, subject: String, patience: Patience) -> Resul
         false => full.clone(),
     };
     let mut candidates = Vec::new();
-    for Way { name, knob, options, scene, choice, planned, note } in ways(scene, everything, is_random)? {
+    for Setting { name, knob, options, scene, choice, planned, note } in settings(scene, everything, is_random)? {
         // What cannot be drawn so is no rung: in coarse steps a material may seem to send back more than it receives.
         let Ok(picture) = drawn(&scene, &choice) else { continue };
         let distances = reference.lab_distances(&picture).unwrap_or_default();
@@ -101,37 +101,40 @@ fn surer(scene: &Scene) -> Scene {
 }
 
 /// In full, by plans, and with less of one thing at a time beside the plan that leaves out nothing.
-fn ways(scene: &Scene, everything: Choice, is_random: bool) -> Result<Vec<Way>, NoPicture> {
+fn settings(scene: &Scene, everything: Choice, is_random: bool) -> Result<Vec<Setting>, NoPicture> {
     let exact = plan(scene, 0.0)?.choice;
     let of = |name: String, knob, options: &[&str], scene: Scene, choice| {
         let options = options.iter().map(|word| (*word).to_owned()).collect();
-        Way { name, knob, options, scene, choice, planned: Some(0.0), note: None }
+        Setting { name, knob, options, scene, choice, planned: Some(0.0), note: None }
     };
-    let mut ways = vec![
-        Way { planned: None, ..of("everything".to_owned(), IN_FULL, &["--everything"], scene.clone(), everything) },
+    let mut settings = vec![
+        Setting { planned: None, ..of("everything".to_owned(), IN_FULL, &["--everything"], scene.clone(), everything) },
         of("plan, product by pixel".to_owned(), IN_FULL, &["--by-pixel"], scene.clone(), exact.by_pixel()),
     ];
     for tolerance in TOLERANCES {
         let found = plan(scene, tolerance)?;
         // The same plan is the same rung.
-        if ways
-            .last()
-            .is_some_and(|last| last.planned.is_some_and(|_| last.knob == "plan" && last.choice == found.choice))
-        {
+        if settings.last().is_some_and(|last| last.knob == PLANNED && last.choice == found.choice) {
             continue;
         }
         let skipped = found.effects.iter().filter(|one| !one.simulate).map(|one| one.effect.name());
         let note = format!("bound {:.3}; left out: {}", found.bound.delta_e, or_nothing(skipped.collect()));
         let options = ["--max-delta-e", &tolerance.to_string()];
-        let way = of(format!("tolerance {tolerance}"), "plan", &options, scene.clone(), found.choice);
-        ways.push(Way { planned: Some(tolerance), note: Some(note), ..way });
+        let setting = of(format!("tolerance {tolerance}"), PLANNED, &options, scene.clone(), found.choice);
+        settings.push(Setting { planned: Some(tolerance), note: Some(note), ..setting });
     }
     for times in STEPS {
         let step = scene.grid.step() * times;
         let Ok(grid) = scene.grid.in_steps_of(step) else { continue };
         let coarser = Scene { grid, ..scene.clone() };
         let choice = plan(&coarser, 0.0)?.choice;
-        ways.push(of(format!("{step} nm"), "step of the wavelength", &["--step", &step.to_string()], coarser, choice));
+        settings.push(of(
+            format!("{step} nm"),
+            "step of the wavelength",
+            &["--step", &step.to_string()],
+            coarser,
+            choice,
+        ));
     }
     let is_fewer = |most: &u32| match scene.bounces {
         Bounces::All => true,
@@ -141,17 +144,19 @@ fn ways(scene: &Scene, everything: Choice, is_random: bool) -> Result<Vec<Way>, 
         let fewer = Scene { bounces: Bounces::Most(most), ..scene.clone() };
         let choice = plan(&fewer, 0.0)?.choice;
         let name = if most == 1 { "1 bounce".to_owned() } else { format!("{most} bounces") };
-        ways.push(of(name, "bounces", &["--bounces", &most.to_string()], fewer, choice));
+        settings.push(of(name, "bounces", &["--bounces", &most.to_string()], fewer, choice));
     }
     for (times, over) in SAMPLES.into_iter().filter(|(_, over)| is_random && scene.samples / over > 0) {
         let samples = scene.samples.saturating_mul(times) / over;
         let fewer = Scene { samples, ..scene.clone() };
         let name = if samples == 1 { "1 sample".to_owned() } else { format!("{samples} samples") };
-        ways.push(of(name, "samples", &["--samples", &samples.to_string()], fewer, exact));
+        settings.push(of(name, "samples", &["--samples", &samples.to_string()], fewer, exact));
     }
-    Ok(ways)
+    Ok(settings)
 }
 
+/// The knob of what a plan may leave out.
+const PLANNED: &str = "plan";
 /// The knob of what leaves the products to the pixels.
 const IN_FULL: &str = "whole product at every pixel";
 

@@ -18,6 +18,6 @@ mod stretch;
 
 pub use dense::render_dense;
 pub use lighting::Lighting;
-pub use render::{Renderer, Way};
+pub use render::{Method, Renderer};
 pub use scene::{Colours, Component, NoScene, Scene};
 pub use sphere::{NoSphere, Sphere};

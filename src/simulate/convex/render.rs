@@ -18,7 +18,7 @@ const INDEX_MINUS_ONE: std::ops::RangeInclusive<f64> = 1e-9..=1e3;
 
 named! {
     /// How an image was made.
-    Way, "way" {
+    Method, "method" {
         /// Several pixels at once; to one unit in the last place what the terms give.
         Lanes = "lanes",
         /// The terms pixel by pixel.
@@ -29,13 +29,13 @@ named! {
 /// Draws scenes.
 #[derive(Debug, Clone, Copy)]
 pub struct Renderer {
-    way: Way,
+    method: Method,
     arch: pulp::Arch,
 }
 
 impl Default for Renderer {
     fn default() -> Self {
-        Self { way: Way::Lanes, arch: pulp::Arch::new() }
+        Self { method: Method::Lanes, arch: pulp::Arch::new() }
     }
 }
 
@@ -50,7 +50,7 @@ impl Renderer {
     /// The same by the terms pixel by pixel, for comparisons.
     #[must_use]
     pub fn generic(self) -> Self {
-        Self { way: Way::Generic, ..self }
+        Self { method: Method::Generic, ..self }
     }
 
     /// True where several pixels are drawn at once, and not the terms pixel by pixel.
@@ -61,7 +61,7 @@ impl Renderer {
 
     fn lobe(&self, scene: &Scene) -> Option<Lobe> {
         let specular = &scene.specular;
-        let is_covered = self.way == Way::Lanes && INDEX_MINUS_ONE.contains(&(specular.refractive_index - 1.0));
+        let is_covered = self.method == Method::Lanes && INDEX_MINUS_ONE.contains(&(specular.refractive_index - 1.0));
         if is_covered { Lobe::new(specular.distribution, specular.roughness) } else { None }
     }
 
@@ -71,7 +71,7 @@ impl Renderer {
     ///
     /// # Errors
     /// [`Undefined`] where a term has no value; the film then holds nothing of use.
-    pub fn render(&self, scene: &Scene, component: Component, film: &mut Film) -> Result<Way, Undefined> {
+    pub fn render(&self, scene: &Scene, component: Component, film: &mut Film) -> Result<Method, Undefined> {
         let index_minus_one = scene.specular.refractive_index - 1.0;
         match scene.lighting {
             Lighting::Directional(direction) => {
@@ -81,16 +81,22 @@ impl Renderer {
         }
     }
 
-    fn lit_by<R: Rays>(&self, rays: R, scene: &Scene, component: Component, film: &mut Film) -> Result<Way, Undefined> {
+    fn lit_by<R: Rays>(
+        &self,
+        rays: R,
+        scene: &Scene,
+        component: Component,
+        film: &mut Film,
+    ) -> Result<Method, Undefined> {
         let colours = scene.of(component);
         let length = 3 * film.width();
         let rows = film.numbers_mut().par_chunks_mut(length).with_min_len(ROWS_AT_ONCE).enumerate();
         let Some(lobe) = self.lobe(scene) else {
             rows.try_for_each(|(row, out)| generic::fill(scene, &rays, &colours, row, out))?;
-            return Ok(Way::Generic);
+            return Ok(Method::Generic);
         };
         let frame = Frame::new(scene, rays, lobe, &colours);
         rows.for_each(|(row, out)| self.arch.dispatch(Row { frame: &frame, row, out }));
-        Ok(Way::Lanes)
+        Ok(Method::Lanes)
     }
 }
