@@ -195,10 +195,14 @@ fn no_pixel_changes_by_more_than_the_bound_and_the_bound_is_not_idle() {
             let left = draw(&scene, &planned.choice.without(decision.effect));
             let (delta_e, luminance) = apart(&full, &left);
             let slack = 1e-4;
-            assert!(delta_e <= decision.bound.delta_e + slack, "case {case}: {delta_e} and {decision:?} of {scene:?}");
-            assert!(luminance <= decision.bound.luminance, "case {case}: {luminance} and {decision:?}");
+            // What a plan without a tolerance says takes no more time than the picture is worth; beside it the closer look.
+            let close = bbrf::simulate::bound(&scene, &planned.choice.without(decision.effect)).unwrap();
+            for bound in [decision.bound, close] {
+                assert!(delta_e <= bound.delta_e + slack, "case {case}: {delta_e} and {bound:?}: {decision:?}");
+                assert!(luminance <= bound.luminance, "case {case}: {luminance} and {bound:?}: {decision:?}");
+            }
             if decision.simulate && delta_e > 0.01 {
-                ratios.push((decision.effect, decision.bound.delta_e / delta_e));
+                ratios.push((decision.effect, close.delta_e / delta_e));
             }
         }
     }
@@ -282,8 +286,7 @@ fn interreflection_is_bounded_to_any_number_of_bounces() {
     println!("interreflection: bound over difference, median {:.2} of {}", ratios[ratios.len() / 2], ratios.len());
     println!("{bounded} had a bound, {unknown} of those with an interface none");
     assert!(bounded > unknown, "{bounded} had a bound, {unknown} had none");
-    // The goal is 10, and is missed by a tenth (docs/rendering.md).
-    assert!(ratios[ratios.len() / 2] < 12.0, "{ratios:?}");
+    assert!(ratios[ratios.len() / 2] < 10.0, "{ratios:?}");
 }
 
 #[test]

@@ -2,6 +2,7 @@
 
 mod bound;
 mod cone;
+mod detail;
 mod exchange;
 mod full;
 mod lab;
@@ -10,6 +11,7 @@ mod patch;
 mod reach;
 mod region;
 mod rings;
+mod stepped;
 
 pub use bound::Bound;
 pub(super) use lab::lab_distance;
@@ -17,6 +19,7 @@ pub(super) use lab::lab_distance;
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use self::detail::Detail;
 use self::full::Full;
 use super::alone::is_alone;
 use super::choice::Choice;
@@ -73,10 +76,9 @@ pub struct Plan {
 pub fn plan(scene: &Scene, max_delta_e: f64) -> Result<Plan, NoPicture> {
     scene.check()?;
     let everything = Choice::everything(scene.bounces, scene.grid.step());
-    // Without a tolerance the bound of interreflection decides nothing: it may be wide, and must not take longer than a small part of
-    // the picture. Time goes with pairs of patches, and one pair takes about as long as 30 rays.
-    let patches = if max_delta_e > 0.0 { usize::MAX } else { (0.001 * cost(scene, &everything)).sqrt() as usize };
-    let full = Full::new(scene, everything, patches)?;
+    // Without a tolerance bounds decide nothing: they may be wide, and must not take longer than a small part of the picture.
+    let detail = if max_delta_e > 0.0 { Detail::FULL } else { Detail::worth(cost(scene, &everything)) };
+    let full = Full::new(scene, everything, detail)?;
     let nothing: Vec<Effect> = Effect::ALL.iter().copied().filter(|effect| full.is_nothing(*effect)).collect();
     let base = Choice { by_pixel: false, ..nothing.iter().fold(everything, |choice, effect| choice.without(*effect)) };
     let alone: Vec<Bound> = Effect::ALL.iter().map(|effect| full.bound(&everything.without(*effect))).collect();
@@ -289,5 +291,5 @@ impl Plan {
 /// [`NoPicture`] for a scene that cannot be drawn.
 pub fn bound(scene: &Scene, choice: &Choice) -> Result<Bound, NoPicture> {
     scene.check()?;
-    Ok(Full::new(scene, Choice::everything(scene.bounces, scene.grid.step()), usize::MAX)?.bound(choice))
+    Ok(Full::new(scene, Choice::everything(scene.bounces, scene.grid.step()), Detail::FULL)?.bound(choice))
 }
