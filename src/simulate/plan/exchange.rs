@@ -6,6 +6,7 @@
 //! one before: once all of it falls by a factor r in two orders, what follows is at most r / (1 - r) of them.
 
 use std::f64::consts::{FRAC_1_PI, PI};
+use std::sync::OnceLock;
 
 use rayon::prelude::*;
 
@@ -37,7 +38,8 @@ pub(super) struct Exchange {
     pub(super) patches: Vec<Patch>,
     /// Whether the camera may see each.
     pub(super) is_seen: Vec<bool>,
-    sights: Vec<Sight>,
+    /// Made where shares are asked for.
+    sights: OnceLock<Vec<Sight>>,
     /// \[patch\]\[light\]: largest irradiance over that of its spectrum.
     pub(super) lit: Vec<Vec<f64>>,
     bodies: Vec<Whole>,
@@ -236,7 +238,7 @@ impl Exchange {
         let mut all = Self {
             is_seen: patches.iter().map(|patch| patch.may_be_seen(scene)).collect(),
             lit: Vec::new(),
-            sights: Vec::new(),
+            sights: OnceLock::new(),
             bodies: scene.bodies.iter().map(|body| Whole::of(&body.shape)).collect(),
             sides: planes(scene)
                 .map(|(number, plane)| patches.iter().map(|patch| patch.side(number, plane)).collect())
@@ -244,8 +246,11 @@ impl Exchange {
             patches,
         };
         all.lit = all.patches.iter().map(|patch| lit(scene, patch)).collect();
-        all.sights = all.for_each_patch(|patch| all.sight(scene, &all.patches[patch]));
         all
+    }
+
+    fn sights(&self, scene: &Scene) -> &[Sight] {
+        self.sights.get_or_init(|| self.for_each_patch(|patch| self.sight(scene, &self.patches[patch])))
     }
 
     fn for_each_patch<A: Send>(&self, of: impl Fn(usize) -> A + Sync + Send) -> Vec<A> {
@@ -317,7 +322,7 @@ impl Exchange {
                 coloured.iter().for_each(|material| send(way, Some(*material)));
             }
             for way in &mut next {
-                way.most = self.for_each_patch(|patch| self.by_way(&self.sights[patch], way));
+                way.most = self.for_each_patch(|patch| self.by_way(&self.sights(scene)[patch], way));
             }
             next.retain(|way| way.most.iter().any(|most| *most > 0.0));
             all.append(&mut last);
@@ -353,14 +358,23 @@ impl Exchange {
         };
         let mut last: Vec<Vec<f64>> = self.lit.iter().map(direct).collect();
         let mut each: Vec<Vec<Vec<f64>>> = Vec::new();
-        let most = (MOST_KEPT / (1 + self.patches.len() * count)).clamp(1, most);
+        let most = most.min((MOST_KEPT / (1 + self.patches.len() * count)).max(1));
         let asked = match bounces {
             Bounces::All => usize::MAX,
             Bounces::Most(most) => most as usize,
         };
+        let is_used = |number: &usize| scene.bodies.iter().any(|body| body.material == *number);
+        let used: Vec<&OnGrid> = (0..materials.len()).filter(is_used).map(|number| &materials[number]).collect();
+        if most == 0 {
+            // The brightest anywhere, for all patches alike.
+            let order = brightest(&used, &brightest_of(&last));
+            let each = vec![vec![order; last.len()]];
+            let rest = if asked > 1 { Some(rest_anywhere(&used, &each[0])?) } else { None };
+            return Some(Orders { each, rest });
+        }
         let of: Vec<&OnGrid> = scene.bodies.iter().map(|body| &materials[body.material]).collect();
         while each.len() < most.min(asked) {
-            last = self.next(&of, &last);
+            last = self.next(self.sights(scene), &of, &last);
             each.push(last.clone());
             if let Some(rest) = rest(&each).filter(|rest| largest(rest) <= SMALL * largest(&each[0])) {
                 return Some(Orders { each, rest: Some(rest) });
@@ -369,17 +383,18 @@ impl Exchange {
         if each.len() >= asked {
             return Some(Orders { each, rest: None });
         }
-        let used: Vec<&OnGrid> = materials
-            .iter()
-            .enumerate()
-            .filter(|(number, _)| scene.bodies.iter().any(|body| body.material == *number))
-            .map(|(_, one)| one)
-            .collect();
-        let rest = rest(&each).or_else(|| rest_anywhere(&used, &last))?;
+        // The sizes of single patches grow with what is not known of them; that of all has the energy as its limit.
+        let rest = match (rest(&each), rest_anywhere(&used, &last)) {
+            (Some(mut rest), Some(anywhere)) => {
+                rest.iter_mut().flatten().zip(anywhere.iter().flatten()).for_each(|(a, b)| *a = a.min(*b));
+                rest
+            }
+            (one, other) => one.or(other)?,
+        };
         Some(Orders { each, rest: Some(rest) })
     }
 
-    fn next(&self, materials: &[&OnGrid], incident: &[Vec<f64>]) -> Vec<Vec<f64>> {
+    fn next(&self, sights: &[Sight], materials: &[&OnGrid], incident: &[Vec<f64>]) -> Vec<Vec<f64>> {
         let sent: Vec<Vec<f64>> =
             self.for_each_patch(|patch| radiated(materials[self.patches[patch].body], &incident[patch]));
         let at = |j: usize| {
@@ -389,7 +404,7 @@ impl Exchange {
             sent
         };
         let at_each: Vec<Vec<(usize, f64)>> = (0..incident.first().map_or(0, Vec::len)).map(at).collect();
-        self.for_each_patch(|patch| at_each.iter().map(|sent| self.gathered(&self.sights[patch], sent)).collect())
+        self.for_each_patch(|patch| at_each.iter().map(|sent| self.gathered(&sights[patch], sent)).collect())
     }
 }
 
@@ -439,14 +454,10 @@ fn rest(each: &[Vec<Vec<f64>>]) -> Option<Vec<Vec<f64>>> {
 /// The same by the brightest patch of each order alone, which no material makes brighter: for scenes where some part of the light
 /// goes on for long at a place and dies soon at another.
 fn rest_anywhere(materials: &[&OnGrid], last: &[Vec<f64>]) -> Option<Vec<Vec<f64>>> {
-    let count = last.first().map_or(0, Vec::len);
-    let mut order: Vec<f64> = (0..count).map(|j| last.iter().map(|list| list[j]).fold(0.0, f64::max)).collect();
-    let mut sum = vec![0.0; count];
+    let mut order = brightest_of(last);
+    let mut sum = vec![0.0; order.len()];
     for _ in 0..MOST_ORDERS {
-        let mut next = vec![0.0; count];
-        for material in materials {
-            next.iter_mut().zip(radiated(material, &order)).for_each(|(most, value)| *most = f64::max(*most, value));
-        }
+        let next = brightest(materials, &order);
         let falls = ratio(next.iter(), order.iter());
         order = next;
         sum.iter_mut().zip(&order).for_each(|(sum, value)| *sum += value);
@@ -456,6 +467,18 @@ fn rest_anywhere(materials: &[&OnGrid], last: &[Vec<f64>]) -> Option<Vec<Vec<f64
         }
     }
     None
+}
+
+/// The largest that any of these materials radiates at each wavelength.
+fn brightest(materials: &[&OnGrid], incident: &[f64]) -> Vec<f64> {
+    let all: Vec<Vec<f64>> = materials.iter().map(|material| radiated(material, incident)).collect();
+    brightest_of(&all)
+}
+
+/// The largest of these lists at each wavelength.
+pub(super) fn brightest_of(lists: &[Vec<f64>]) -> Vec<f64> {
+    let count = lists.first().map_or(0, Vec::len);
+    (0..count).map(|j| lists.iter().map(|list| list[j]).fold(0.0, f64::max)).collect()
 }
 
 impl Orders {

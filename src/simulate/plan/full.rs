@@ -10,10 +10,11 @@ use super::super::scene::{Body, Bounces, Scene};
 use super::super::source::Source;
 use super::bound::Bound;
 use super::detail::Detail;
-use super::exchange::{Exchange, Orders, Way};
+use super::exchange::{Exchange, Orders, Way, brightest_of};
 use super::lab::Interest;
 use super::left::is_within;
 use super::reach::Reach;
+use super::region::Lit;
 use super::stepped::Stepped;
 
 /// The full picture, against which plans are held.
@@ -36,6 +37,8 @@ pub(super) struct Full<'a> {
 /// Light between bodies.
 pub(super) struct Between {
     pub(super) exchange: Exchange,
+    /// How much of each light each patch may get.
+    pub(super) lit: Vec<Vec<Lit>>,
     /// Ways of so many first orders, whose colours are known.
     pub(super) ways: Vec<Way>,
     known: u32,
@@ -45,7 +48,7 @@ pub(super) struct Between {
 pub(super) struct Indirect {
     /// Of each body anywhere, with that of the lights; empty where no interface asks for it.
     pub(super) all: Vec<Vec<f64>>,
-    /// Of each patch by what is drawn beyond the ways whose colours are known, and by what the full picture has more of; empty where
+    /// Of each patch, or one for all, by what is drawn beyond the ways whose colours are known, and by what the full picture has more of; empty where
     /// there is none.
     pub(super) kept: Vec<Vec<f64>>,
     pub(super) lost: Vec<Vec<f64>>,
@@ -118,7 +121,8 @@ impl<'a> Full<'a> {
             };
             let exchange = Some(exchange).filter(Exchange::is_finite)?;
             let (ways, known) = exchange.ways(self.scene, &self.whole.prepared.materials, most);
-            Some(Between { exchange, ways, known })
+            let lit = exchange.patches.iter().map(|patch| self.lit_at(patch)).collect();
+            Some(Between { exchange, lit, ways, known })
         };
         self.between.get_or_init(make).as_ref()
     }
@@ -164,6 +168,10 @@ impl<'a> Full<'a> {
         } else {
             kept = self.orders(planned)?.between(*known, drawn, self.choice.bounces);
             lost = self.orders(&self.whole)?.between(*known, Bounces::All, self.choice.bounces);
+        }
+        if self.detail.orders == 0 {
+            // All patches alike.
+            (kept, lost) = (vec![brightest_of(&kept)], vec![brightest_of(&lost)]);
         }
         let all = if self.reach.has_interface.iter().any(|has| *has) { self.incident()? } else { Vec::new() };
         let is_mirror_lost = !(is_sent && has(Effect::Specular) && drawn == self.choice.bounces);

@@ -197,12 +197,10 @@ fn on(factors: &[Factor], low: Vec<f64>, high: Vec<f64>, has_more: bool, best: &
     }
     let mut ranges = [[Range::ZERO; 3]; 3];
     for (k, one) in factors.iter().enumerate() {
-        for c in 0..3 {
-            for (range, value) in
-                ranges[c].iter_mut().zip([one.kept[c], one.kept[c] + one.left_out[c], one.left_out[c]])
-            {
-                range.add(low[k], high[k], value);
-            }
+        for (c, [kept, full, apart]) in ranges.iter_mut().enumerate() {
+            kept.add(low[k], high[k], one.kept[c]);
+            full.add(low[k], high[k], one.kept[c] + one.left_out[c]);
+            apart.add(low[k], high[k], one.left_out[c]);
         }
     }
     let bound = by_channels(&ranges, has_more).min(by_slopes(factors, &low, &high, &ranges, has_more));

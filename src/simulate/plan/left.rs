@@ -1,6 +1,7 @@
 //! What is left out of a body, as colours and spectra under each light.
 
 use std::f64::consts::FRAC_1_PI;
+use std::rc::Rc;
 
 use super::super::choice::Choice;
 use super::super::effect::Effect;
@@ -19,9 +20,9 @@ pub(super) struct Direct {
     /// What the full picture has more of.
     pub(super) left_out: [f64; 3],
     /// Spectrum of what is left out.
-    pub(super) lost: Vec<f64>,
+    pub(super) lost: Rc<Vec<f64>>,
     /// Spectrum of all: what a shadow takes that is not drawn.
-    pub(super) all: Vec<f64>,
+    pub(super) all: Rc<Vec<f64>>,
 }
 
 /// Light of the same colours by some ways, by their numbers.
@@ -30,7 +31,7 @@ pub(super) struct ByWays {
     is_drawn: bool,
     pub(super) kept: [f64; 3],
     pub(super) left_out: [f64; 3],
-    pub(super) lost: Vec<f64>,
+    pub(super) lost: Rc<Vec<f64>>,
 }
 
 /// What is left out of a body.
@@ -38,7 +39,7 @@ pub(super) struct LeftOut {
     pub(super) direct: Vec<Direct>,
     pub(super) by_ways: Vec<ByWays>,
     /// What the interface mirrors of other bodies at most.
-    pub(super) mirrored: Option<([f64; 3], Vec<f64>)>,
+    pub(super) mirrored: Option<([f64; 3], Rc<Vec<f64>>)>,
 }
 
 impl Full<'_> {
@@ -53,7 +54,9 @@ impl Full<'_> {
         LeftOut {
             direct: self.direct(material, plan, planned),
             by_ways: indirect.map_or_else(Vec::new, |_| self.by_ways(material, plan, planned)),
-            mirrored: indirect.and_then(|indirect| self.mirrored(body, indirect)),
+            mirrored: indirect
+                .and_then(|indirect| self.mirrored(body, indirect))
+                .map(|(xyz, spectrum)| (xyz, Rc::new(spectrum))),
         }
     }
 
@@ -87,8 +90,13 @@ impl Full<'_> {
                         acts.iter().filter(|act| counts(**act)).map(|act| &full[*act].spectra[light]).collect();
                     (0..full[0].spectra[light].len()).map(|j| counted.iter().map(|list| list[j].abs()).sum()).collect()
                 };
-                let (lost, all) = (spectrum(&|act| !is_exact(act)), spectrum(&|_| true));
+                let (mut lost, all) = (spectrum(&|act| !is_exact(act)), spectrum(&|_| true));
+                for act in acts.iter().filter(|act| is_stepped && has(**act)) {
+                    let drawn = planned.beside(&less[*act].spectra[light], self.whole.prepared.grid.nm());
+                    lost.iter_mut().zip(drawn).for_each(|(lost, value)| *lost += value);
+                }
                 if whole != [0.0; 3] || kept != [0.0; 3] || lost.iter().any(|value| *value != 0.0) {
+                    let (lost, all) = (Rc::new(lost), Rc::new(all));
                     list.push(Direct { light, is_lobe: acts == [2], kept, left_out, lost, all });
                 }
             }
@@ -103,6 +111,7 @@ impl Full<'_> {
         let full = self.whole.by_ways(ways, true);
         let less = planned.by_ways(ways, plan.has(Effect::Luminescence));
         let acts = [plan.has(Effect::Luminescence), plan.has(Effect::Diffuse), false];
+        let is_stepped = plan.step_nm != self.choice.step_nm;
         let mut all: Vec<ByWays> = Vec::new();
         for (number, way) in ways.iter().enumerate().filter(|(_, way)| is_within(way.order, self.choice.bounces)) {
             let is_drawn = is_within(way.order, plan.bounces_drawn())
@@ -117,15 +126,23 @@ impl Full<'_> {
             }
             let whole = done(&self.whole.prepared.materials[material], &full[number], [true, true, false]);
             let xyz = self.whole.colour(&whole);
-            let kept = match is_drawn {
-                true => planned.colour(&done(&planned.prepared.materials[material], &less[number], acts)),
-                false => [0.0; 3],
+            let is_exact = is_drawn && !is_stepped && acts == [true, true, false];
+            let drawn = match is_drawn {
+                true => done(&planned.prepared.materials[material], &less[number], acts),
+                false => vec![0.0; planned.prepared.grid.nm().len()],
             };
-            let is_exact = is_drawn && plan.step_nm == self.choice.step_nm && acts == [true, true, false];
+            let kept = planned.colour(&drawn);
             let left_out = if is_exact { [0.0; 3] } else { [0, 1, 2].map(|c| xyz[c] - kept[c]) };
-            let lost = whole.iter().map(|value| if is_exact { 0.0 } else { value.abs() * FRAC_1_PI }).collect();
-            if xyz != [0.0; 3] || kept != [0.0; 3] {
-                all.push(ByWays { ways: vec![number], is_drawn, kept, left_out, lost });
+            let lost: Vec<f64> = match is_stepped {
+                _ if is_exact => Vec::new(),
+                true => {
+                    let beside = planned.beside(&drawn, self.whole.prepared.grid.nm());
+                    whole.iter().zip(beside).map(|(whole, drawn)| (whole.abs() + drawn) * FRAC_1_PI).collect()
+                }
+                false => whole.iter().zip(&drawn).map(|(whole, drawn)| (whole - drawn).abs() * FRAC_1_PI).collect(),
+            };
+            if xyz != [0.0; 3] || kept != [0.0; 3] || lost.iter().any(|value| *value != 0.0) {
+                all.push(ByWays { ways: vec![number], is_drawn, kept, left_out, lost: Rc::new(lost) });
             }
         }
         all

@@ -25,6 +25,7 @@ use super::alone::is_alone;
 use super::choice::Choice;
 use super::effect::Effect;
 use super::grid::NoGrid;
+use super::material::Material;
 use super::picture::NoPicture;
 use super::scene::{Bounces, Scene};
 
@@ -77,7 +78,8 @@ pub fn plan(scene: &Scene, max_delta_e: f64) -> Result<Plan, NoPicture> {
     scene.check()?;
     let everything = Choice::everything(scene.bounces, scene.grid.step());
     // Without a tolerance bounds decide nothing: they may be wide, and must not take longer than a small part of the picture.
-    let detail = if max_delta_e > 0.0 { Detail::FULL } else { Detail::worth(cost(scene, &everything)) };
+    let rays = cost(scene, &everything);
+    let detail = if max_delta_e > 0.0 { Detail::deciding(rays) } else { Detail::telling(rays, scene.bodies.len()) };
     let full = Full::new(scene, everything, detail)?;
     let nothing: Vec<Effect> = Effect::ALL.iter().copied().filter(|effect| full.is_nothing(*effect)).collect();
     let base = Choice { by_pixel: false, ..nothing.iter().fold(everything, |choice, effect| choice.without(*effect)) };
@@ -187,9 +189,7 @@ fn reason(
     }
     let is_single = matches!(scene.bodies.as_slice(), [only] if only.shape.is_convex());
     let text = match effect {
-        Effect::Luminescence
-            if scene.materials.iter().all(|one| one.surface.density.iter().all(|value| *value == 0.0)) =>
-        {
+        Effect::Luminescence if used(scene).all(|one| one.surface.density.iter().all(|value| *value == 0.0)) => {
             "no material luminesces"
         }
         Effect::Luminescence => "no light falls where a material is excited",
@@ -204,6 +204,11 @@ fn reason(
         Effect::Surround => "no light comes from all around",
     };
     text.to_owned()
+}
+
+/// Materials of bodies.
+fn used(scene: &Scene) -> impl Iterator<Item = &Material> {
+    scene.bodies.iter().map(|body| &scene.materials[body.material])
 }
 
 fn route(scene: &Scene, full: &Full<'_>, choice: &Choice) -> Vec<String> {

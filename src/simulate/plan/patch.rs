@@ -67,6 +67,9 @@ fn fineness(bodies: usize, most: usize) -> usize {
     (0..=by_bodies).rev().find(|fine| 8 * fine * fine * bodies <= most).unwrap_or(0)
 }
 
+/// Half the angle of normals, rad, from which on a patch is not taken for flat.
+const NOT_FLAT: f64 = 1e-9;
+
 /// Edges of the parts of a plane without end, in radii of what else there is.
 const EDGES: [&[f64]; 5] = [&[2.0], &[1.0, 4.0], &[0.6, 2.0, 8.0], &[0.3, 0.8, 2.0, 8.0], &[0.25, 0.5, 1.0, 2.5, 10.0]];
 
@@ -77,12 +80,12 @@ pub(super) fn cut(scene: &Scene, most: usize) -> Vec<Patch> {
     let mut all = Vec::new();
     for (number, body) in scene.bodies.iter().enumerate() {
         let mut cutter = Cutter { body: number, all: &mut all };
-        if fine == 0 && !matches!(body.shape, Shape::Plane(_)) {
-            cutter.whole(body);
-            continue;
-        }
         // Where the camera is in a body, its inner side is what there is.
         let is_within = !is_seen_from_outside(scene, body);
+        if fine == 0 && !matches!(body.shape, Shape::Plane(_)) {
+            cutter.whole(body, body.shape.is_convex() && !is_within);
+            continue;
+        }
         match &body.shape {
             Shape::Sphere(ball) => cutter.ball(ball, fine, is_within),
             Shape::Box(cuboid) => cutter.cuboid(cuboid, fine, is_within),
@@ -123,9 +126,9 @@ impl Cutter<'_> {
     }
 
     /// In one piece.
-    fn whole(&mut self, body: &Body) {
+    fn whole(&mut self, body: &Body, is_convex: bool) {
         let (centre, radius) = body.shape.around().unwrap_or(([0.0; 3], f64::INFINITY));
-        self.add(centre, Extent::Within(radius), Cone::ALL, f64::INFINITY, false);
+        self.add(centre, Extent::Within(radius), Cone::ALL, f64::INFINITY, is_convex);
     }
 
     /// A sphere by the six sides of a cube about it, each in fields of equal angles.
@@ -200,7 +203,8 @@ impl Cutter<'_> {
     fn mesh(&mut self, mesh: &Mesh, pieces: usize, is_within: bool) {
         let is_convex = mesh.is_convex() && !is_within;
         for piece in mesh.pieces(pieces) {
-            let half = piece.normals.iter().map(|normal| angle(piece.normal, *normal)).fold(0.0, f64::max);
+            // The middle of a piece need not lie in its plane: it is never taken for flat.
+            let half = piece.normals.iter().map(|normal| angle(piece.normal, *normal)).fold(NOT_FLAT, f64::max);
             let normals = Cone { axis: piece.normal, half };
             let extent = Extent::Within(piece.radius);
             self.add(piece.centre, extent, normals, piece.area, is_convex);

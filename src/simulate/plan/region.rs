@@ -1,7 +1,7 @@
 //! A body, or a patch of it: the factors that light has there, and the largest difference that they make with what is left out.
 
 use std::cmp::Ordering;
-use std::collections::BinaryHeap;
+use std::collections::{BinaryHeap, HashMap};
 use std::f64::consts::PI;
 use std::rc::Rc;
 
@@ -9,7 +9,7 @@ use super::super::choice::Choice;
 use super::super::effect::Effect;
 use super::bound::Bound;
 use super::exchange::lit;
-use super::full::{Between, Full, Indirect};
+use super::full::{Full, Indirect};
 use super::lab::{Factor, Interest, Largest, Look, largest};
 use super::left::LeftOut;
 use super::patch::Patch;
@@ -20,6 +20,16 @@ const MOST_SHADES: usize = 6;
 /// A bound that is so many times what is allowed is not looked at any closer.
 const HOPELESS: f64 = 4.0;
 
+/// How much of a light there may be at a place.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Lit {
+    /// Least and largest cos(theta_i) times the strength.
+    least: f64,
+    most: f64,
+    /// Whether a body may stand before it.
+    is_shaded: bool,
+}
+
 /// How much light there may be at a place of a body.
 struct Region {
     body: usize,
@@ -27,10 +37,8 @@ struct Region {
     patch: Option<(usize, Patch)>,
     /// How often it has been cut.
     depth: u32,
-    /// Least and largest cos(theta_i) times the strength of each light.
-    lit: Vec<[f64; 2]>,
-    /// Whether a body may stand before each.
-    shaded: Vec<bool>,
+    /// How much of each light there may be.
+    lit: Vec<Lit>,
     /// Largest shares of the ways of the same colours.
     by_ways: Vec<f64>,
     /// What is kept, and what is left out, of the light by others beyond that, each of X, Y and Z for itself.
@@ -43,8 +51,8 @@ struct Region {
 struct Further {
     kept: Vec<[f64; 3]>,
     /// What is drawn that is no part of the full picture.
-    drawn: Vec<[f64; 3]>,
-    lost: Vec<([f64; 3], Vec<f64>)>,
+    drawn: Vec<([f64; 3], Rc<Vec<f64>>)>,
+    lost: Vec<([f64; 3], Rc<Vec<f64>>)>,
 }
 
 /// A region with what it changes by at most.
@@ -53,6 +61,12 @@ struct Bounded {
     /// Whether boxes of factors were looked at, and not only all of them as one.
     is_close: bool,
     region: Region,
+}
+
+impl Lit {
+    fn ends(self) -> [f64; 2] {
+        [self.least, self.most]
+    }
 }
 
 impl Ord for Bounded {
@@ -78,7 +92,7 @@ impl Eq for Bounded {}
 /// A factor with the spectrum that is left out.
 struct Part {
     factor: Factor,
-    peak: Vec<f64>,
+    peak: Rc<Vec<f64>>,
     is_by_way: bool,
 }
 
@@ -100,29 +114,39 @@ impl Full<'_> {
         indirect: Option<&Indirect>,
         interest: Interest,
     ) -> Bound {
-        let regions = (0..self.scene.bodies.len()).flat_map(|body| {
-            let left = Rc::new(self.left_out(body, plan, planned, indirect));
-            self.regions(body, &left, indirect)
-        });
-        let is_lone = self.detail.splits == 0;
+        // What is alike on all bodies of a material is made once.
+        let mut known: HashMap<usize, (Rc<LeftOut>, Option<Rc<Further>>)> = HashMap::new();
+        let mut all = Vec::new();
+        for (body, one) in self.scene.bodies.iter().enumerate() {
+            let make = || {
+                let left = Rc::new(self.left_out(body, plan, planned, indirect));
+                let further = indirect.filter(|indirect| indirect.lost.len() <= 1 && indirect.kept.len() <= 1);
+                let further = further.map(|indirect| Rc::new(self.further(body, 0, &left, indirect)));
+                (left, further)
+            };
+            // What an interface mirrors depends on its place.
+            let (left, further) = match self.reach.has_interface[body] && indirect.is_some() {
+                true => make(),
+                false => known.entry(one.material).or_insert_with(make).clone(),
+            };
+            all.extend(self.regions(body, &left, further.as_ref(), indirect));
+        }
         let is_unknown = indirect.is_none() && self.goes_round();
         let bounded = |region: Region, is_close: bool| {
             let boxes = if is_close { self.detail.boxes } else { 0 };
-            Bounded {
-                bound: self.over_shades(&region, plan, Look { interest, boxes, has_more: is_unknown }),
-                is_close,
-                region,
-            }
+            let look = Look { interest, boxes, has_more: is_unknown };
+            Bounded { bound: self.over_shades(&region, plan, look), is_close, region }
         };
-        let mut heap: BinaryHeap<Bounded> = regions.map(|region| bounded(region, is_lone)).collect();
-        let mut splits = self.detail.splits;
+        let mut heap: BinaryHeap<Bounded> = all.into_iter().map(|region| bounded(region, false)).collect();
+        let (mut splits, mut closer) = (self.detail.splits, self.detail.closer);
         while let Some(first) = heap.peek() {
             let delta_e = first.bound.delta_e;
-            if delta_e <= interest.floor || is_lone || delta_e > HOPELESS * interest.ceiling && first.is_close {
+            let is_hopeless = first.is_close && (delta_e > HOPELESS * interest.ceiling || !delta_e.is_finite());
+            if delta_e <= interest.floor || is_hopeless || closer == 0 {
                 break;
             }
-            let parts = if first.is_close { self.parts_of(&first.region) } else { Vec::new() };
-            if first.is_close && (parts.is_empty() || splits == 0) {
+            let parts = if first.is_close && splits > 0 { self.parts_of(&first.region) } else { Vec::new() };
+            if first.is_close && parts.is_empty() {
                 break;
             }
             let Some(first) = heap.pop() else { break };
@@ -130,20 +154,27 @@ impl Full<'_> {
                 splits -= 1;
                 heap.extend(parts.into_iter().map(|region| bounded(region, false)));
             } else {
+                closer -= 1;
                 heap.push(bounded(first.region, true));
             }
         }
         heap.into_iter().fold(Bound::ZERO, |all, one| all.larger(one.bound))
     }
 
-    fn regions(&self, body: usize, left: &Rc<LeftOut>, indirect: Option<&Indirect>) -> Vec<Region> {
+    fn regions(
+        &self,
+        body: usize,
+        left: &Rc<LeftOut>,
+        further: Option<&Rc<Further>>,
+        indirect: Option<&Indirect>,
+    ) -> Vec<Region> {
         let (Some(indirect), Some(between)) = (indirect, self.between()) else { return vec![self.whole(body, left)] };
         let patches = between.exchange.patches.iter().enumerate();
         let seen = patches.filter(|(number, patch)| patch.body == body && between.exchange.is_seen[*number]);
         seen.map(|(number, patch)| {
-            let further = Rc::new(self.further(body, number, left, indirect));
-            let most: Vec<f64> = between.ways.iter().map(|way| way.most[number]).collect();
-            self.region((number, *patch), 0, left, &further, &most)
+            let further = further.map_or_else(|| Rc::new(self.further(body, number, left, indirect)), Rc::clone);
+            let lit = between.lit[number].clone();
+            Self::region((number, *patch), 0, lit, left, &further, |way| between.ways[way].most[number])
         })
         .collect()
     }
@@ -154,39 +185,42 @@ impl Full<'_> {
             body,
             patch: None,
             depth: 0,
-            lit: self.reach.lit[body].iter().map(|most| [0.0, *most]).collect(),
-            shaded: self.reach.shaded[body].clone(),
+            lit: self.reach.lit[body]
+                .iter()
+                .zip(&self.reach.shaded[body])
+                .map(|(most, is_shaded)| Lit { least: 0.0, most: *most, is_shaded: *is_shaded })
+                .collect(),
             by_ways: Vec::new(),
             further: Rc::default(),
             left: Rc::clone(left),
         }
     }
 
+    pub(super) fn lit_at(&self, patch: &Patch) -> Vec<Lit> {
+        let one = |(light, most): (usize, f64)| {
+            let source = &self.scene.sources[light];
+            let (most, body) = (most.min(self.reach.lit[patch.body][light]), patch.body);
+            let is_shaded = self.reach.shaded[body][light] && patch.is_shaded(self.scene, source);
+            let least = if is_shaded { 0.0 } else { patch.least_lit(source) };
+            Lit { least: least.min(most), most, is_shaded }
+        };
+        lit(self.scene, patch).into_iter().enumerate().map(one).collect()
+    }
+
     fn region(
-        &self,
         (number, patch): (usize, Patch),
         depth: u32,
+        lit: Vec<Lit>,
         left: &Rc<LeftOut>,
         further: &Rc<Further>,
-        most_of_ways: &[f64],
+        most_of: impl Fn(usize) -> f64,
     ) -> Region {
-        let body = patch.body;
-        let most = lit(self.scene, &patch);
-        let both = |light: usize| {
-            let source = &self.scene.sources[light];
-            let most = most[light].min(self.reach.lit[body][light]);
-            let least = if patch.is_shaded(self.scene, source) { 0.0 } else { patch.least_lit(source) };
-            [least.min(most), most]
-        };
-        let sources = self.scene.sources.iter().enumerate();
-        let shaded = sources.map(|(light, one)| self.reach.shaded[body][light] && patch.is_shaded(self.scene, one));
         Region {
-            body,
+            body: patch.body,
             patch: Some((number, patch)),
             depth,
-            lit: (0..self.scene.sources.len()).map(both).collect(),
-            shaded: shaded.collect(),
-            by_ways: left.by_ways.iter().map(|one| one.ways.iter().map(|way| most_of_ways[*way]).sum()).collect(),
+            lit,
+            by_ways: left.by_ways.iter().map(|one| one.ways.iter().map(|way| most_of(*way)).sum()).collect(),
             further: Rc::clone(further),
             left: Rc::clone(left),
         }
@@ -200,9 +234,9 @@ impl Full<'_> {
         }
         let part = |patch: Patch| {
             let sight = between.exchange.sight(self.scene, &patch);
-            let most_of = |way| between.exchange.by_way(&sight, way);
-            let most: Vec<f64> = between.ways.iter().map(most_of).collect();
-            self.region((number, patch), region.depth + 1, &region.left, &region.further, &most)
+            let most_of = |way: usize| between.exchange.by_way(&sight, &between.ways[way]);
+            let lit = self.lit_at(&patch);
+            Self::region((number, patch), region.depth + 1, lit, &region.left, &region.further, most_of)
         };
         patch.quarters().into_iter().map(part).collect()
     }
@@ -212,14 +246,19 @@ impl Full<'_> {
         let material = self.scene.bodies[body].material;
         let mut all = Further::default();
         if let Some(incident) = indirect.kept.get(patch) {
-            let (xyz, _) = Self::by_others(&indirect.planned, material, incident);
-            let list = if indirect.is_stepped { &mut all.drawn } else { &mut all.kept };
-            list.push(xyz);
+            let (xyz, spectrum) = Self::by_others(&indirect.planned, material, incident);
+            if indirect.is_stepped {
+                let beside = indirect.planned.beside(&spectrum, self.whole.prepared.grid.nm());
+                all.drawn.push((xyz, Rc::new(beside)));
+            } else {
+                all.kept.push(xyz);
+            }
         }
-        all.lost.extend(indirect.lost.get(patch).map(|incident| Self::by_others(&self.whole, material, incident)));
+        let of = |incident: &Vec<f64>| Self::by_others(&self.whole, material, incident);
+        all.lost.extend(indirect.lost.get(patch).map(of).map(|(xyz, spectrum)| (xyz, Rc::new(spectrum))));
         if let Some((xyz, spectrum)) = &left.mirrored {
             all.kept.push(*xyz);
-            all.lost.extend(indirect.is_mirror_lost.then(|| (*xyz, spectrum.clone())));
+            all.lost.extend(indirect.is_mirror_lost.then(|| (*xyz, Rc::clone(spectrum))));
         }
         all
     }
@@ -229,23 +268,23 @@ impl Full<'_> {
         for one in &region.left.direct {
             let light = one.light;
             let [least, most] =
-                if one.is_lobe { [0.0, self.reach.shining[region.body][light]] } else { region.lit[light] };
+                if one.is_lobe { [0.0, self.reach.shining[region.body][light]] } else { region.lit[light].ends() };
             if parts.pairs.last().is_none_or(|(last, _)| *last != light) {
                 parts.pairs.push((light, [None; 2]));
             }
             if let Some((_, at)) = parts.pairs.last_mut() {
                 at[usize::from(one.is_lobe)] = Some(parts.all.len());
             }
-            if !plan.has(Effect::Shadow) && region.shaded[light] {
+            if !plan.has(Effect::Shadow) && region.lit[light].is_shaded {
                 let factor = Factor { least: 0.0, most, kept: one.kept, left_out: one.kept.map(|value| -value) };
-                parts.shades.push((parts.all.len(), Part { factor, peak: one.all.clone(), is_by_way: false }));
+                parts.shades.push((parts.all.len(), Part { factor, peak: Rc::clone(&one.all), is_by_way: false }));
             }
             let factor = Factor { least, most, kept: one.kept, left_out: one.left_out };
-            parts.all.push(Part { factor, peak: one.lost.clone(), is_by_way: false });
+            parts.all.push(Part { factor, peak: Rc::clone(&one.lost), is_by_way: false });
         }
         for (one, most) in region.left.by_ways.iter().zip(&region.by_ways).filter(|(_, most)| **most > 0.0) {
             let factor = Factor { least: 0.0, most: *most, kept: one.kept, left_out: one.left_out };
-            merge(&mut parts.all, Part { factor, peak: one.lost.clone(), is_by_way: true });
+            merge(&mut parts.all, Part { factor, peak: Rc::clone(&one.lost), is_by_way: true });
         }
         region.further.add_to(&mut parts.all);
         parts
@@ -271,7 +310,7 @@ impl Full<'_> {
         let mut all = Bound::ZERO;
         for which in 0..1_usize << lights {
             let mut factors: Vec<Factor> = parts.iter().map(|part| part.factor).collect();
-            let mut spectra: Vec<&Vec<f64>> = parts.iter().map(|part| &part.peak).collect();
+            let mut spectra: Vec<&Vec<f64>> = parts.iter().map(|part| &*part.peak).collect();
             for (_, (at, shadow)) in shades.iter().enumerate().filter(|(k, _)| which >> k & 1 == 1) {
                 factors[*at] = shadow.factor;
                 spectra[*at] = &shadow.peak;
@@ -333,17 +372,21 @@ impl Further {
     /// Each of X, Y and Z for itself.
     fn add_to(&self, parts: &mut Vec<Part>) {
         let alone = |xyz: &[f64; 3], c: usize| [0, 1, 2].map(|k| if k == c { xyz[c] } else { 0.0 });
-        let mut add = |kept: [f64; 3], left_out: [f64; 3], peak: Vec<f64>| {
-            if kept != [0.0; 3] || left_out != [0.0; 3] {
+        let mut add = |kept: [f64; 3], left_out: [f64; 3], peak: Rc<Vec<f64>>| {
+            if kept != [0.0; 3] || left_out != [0.0; 3] || !peak.is_empty() {
                 let factor = Factor { least: 0.0, most: 1.0, kept, left_out };
                 parts.push(Part { factor, peak, is_by_way: false });
             }
         };
         for c in 0..3 {
-            self.kept.iter().for_each(|xyz| add(alone(xyz, c), [0.0; 3], Vec::new()));
-            self.drawn.iter().for_each(|xyz| add(alone(xyz, c), alone(xyz, c).map(|value| -value), Vec::new()));
+            self.kept.iter().for_each(|xyz| add(alone(xyz, c), [0.0; 3], Rc::default()));
+            // The spectrum is that of all three.
+            let peak = |spectrum: &Rc<Vec<f64>>| if c == 1 { Rc::clone(spectrum) } else { Rc::default() };
+            for (xyz, spectrum) in &self.drawn {
+                add(alone(xyz, c), alone(xyz, c).map(|value| -value), peak(spectrum));
+            }
             for (xyz, spectrum) in &self.lost {
-                add([0.0; 3], alone(xyz, c), if c == 1 { spectrum.clone() } else { Vec::new() });
+                add([0.0; 3], alone(xyz, c), peak(spectrum));
             }
         }
     }
@@ -365,12 +408,13 @@ fn merge(parts: &mut Vec<Part>, part: Part) {
     match parts.iter_mut().find(is_same) {
         Some(old) => {
             let xyz = both(&old.factor);
-            old.peak = (0..old.peak.len().max(part.peak.len()))
+            let peak = (0..old.peak.len().max(part.peak.len()))
                 .map(|j| {
                     let at = |part: &Part| part.peak.get(j).map_or(0.0, |value| part.factor.most * value);
                     at(old) + at(&part)
                 })
                 .collect();
+            old.peak = Rc::new(peak);
             let sum = |k: usize| (xyz[k] + new[k]) * (1.0 + 1e-12);
             let [kept, left_out] = [[0, 1, 2].map(sum), [3, 4, 5].map(sum)];
             old.factor = Factor { least: 0.0, most: 1.0, kept, left_out };

@@ -46,6 +46,17 @@ impl Stepped {
         [0, 1, 2].map(|c| sum(c) / self.prepared.white[c])
     }
 
+    /// The larger of a spectrum's values on either side of each of these wavelengths.
+    pub(super) fn beside(&self, spectrum: &[f64], nm: &[f64]) -> Vec<f64> {
+        let own = self.prepared.grid.nm();
+        let near = |at: &f64| {
+            let after = own.partition_point(|one| one < at);
+            let ends = [after.saturating_sub(1), after.min(own.len() - 1)];
+            ends.map(|k| spectrum[k].abs()).into_iter().fold(0.0, f64::max)
+        };
+        nm.iter().map(near).collect()
+    }
+
     /// What each act of a material makes of each light.
     pub(super) fn acts(&self, material: usize) -> &[Acts; ACTS] {
         let make = || self.prepared.materials.iter().map(|one| self.acts_of(one)).collect();
