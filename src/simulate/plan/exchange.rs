@@ -41,7 +41,7 @@ pub(super) struct Exchange {
     /// Made where shares are asked for.
     sights: OnceLock<Vec<Sight>>,
     /// \[patch\]\[light\]: largest irradiance over that of its spectrum.
-    pub(super) lit: Vec<Vec<f64>>,
+    lit: Vec<Vec<f64>>,
     bodies: Vec<Whole>,
     /// \[plane without end\]\[patch\]: the side on which it is.
     sides: Vec<Vec<i8>>,
@@ -409,7 +409,7 @@ impl Exchange {
 }
 
 /// Largest irradiances of a patch by each light.
-pub(super) fn lit(scene: &Scene, patch: &Patch) -> Vec<f64> {
+fn lit(scene: &Scene, patch: &Patch) -> Vec<f64> {
     let one = |source| if patch.is_dark(scene, source) { 0.0 } else { patch.lit(source) };
     scene.sources.iter().map(one).collect()
 }

@@ -7,8 +7,8 @@ use std::rc::Rc;
 
 use super::super::choice::Choice;
 use super::super::effect::Effect;
+use super::super::source::Source;
 use super::bound::Bound;
-use super::exchange::lit;
 use super::full::{Full, Indirect};
 use super::lab::{Factor, Interest, Largest, Look, largest};
 use super::left::LeftOut;
@@ -23,9 +23,11 @@ const HOPELESS: f64 = 4.0;
 /// How much of a light there may be at a place.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Lit {
-    /// Least and largest cos(theta_i) times the strength.
+    /// Least and largest cos(theta_i) times the strength, the largest where nothing hides it.
     least: f64,
     most: f64,
+    /// Whether a body stands before it everywhere.
+    is_dark: bool,
     /// Whether a body may stand before it.
     is_shaded: bool,
 }
@@ -64,8 +66,8 @@ struct Bounded {
 }
 
 impl Lit {
-    fn ends(self) -> [f64; 2] {
-        [self.least, self.most]
+    fn ends(self, has_shadow: bool) -> [f64; 2] {
+        [self.least, if self.is_dark && has_shadow { 0.0 } else { self.most }]
     }
 }
 
@@ -145,12 +147,13 @@ impl Full<'_> {
             if delta_e <= interest.floor || is_hopeless || closer == 0 {
                 break;
             }
-            let parts = if first.is_close && splits > 0 { self.parts_of(&first.region) } else { Vec::new() };
-            if first.is_close && parts.is_empty() {
+            let parts = Some(&first.region).filter(|_| first.is_close && splits > 0);
+            let parts = parts.and_then(|region| self.parts_of(region));
+            if first.is_close && parts.is_none() {
                 break;
             }
             let Some(first) = heap.pop() else { break };
-            if first.is_close {
+            if let Some(parts) = parts {
                 splits -= 1;
                 heap.extend(parts.into_iter().map(|region| bounded(region, false)));
             } else {
@@ -188,7 +191,7 @@ impl Full<'_> {
             lit: self.reach.lit[body]
                 .iter()
                 .zip(&self.reach.shaded[body])
-                .map(|(most, is_shaded)| Lit { least: 0.0, most: *most, is_shaded: *is_shaded })
+                .map(|(most, is_shaded)| Lit { least: 0.0, most: *most, is_dark: false, is_shaded: *is_shaded })
                 .collect(),
             by_ways: Vec::new(),
             further: Rc::default(),
@@ -197,14 +200,14 @@ impl Full<'_> {
     }
 
     pub(super) fn lit_at(&self, patch: &Patch) -> Vec<Lit> {
-        let one = |(light, most): (usize, f64)| {
-            let source = &self.scene.sources[light];
-            let (most, body) = (most.min(self.reach.lit[patch.body][light]), patch.body);
-            let is_shaded = self.reach.shaded[body][light] && patch.is_shaded(self.scene, source);
+        let one = |(light, source): (usize, &Source)| {
+            let is_dark = patch.is_dark(self.scene, source);
+            let is_shaded = is_dark || self.reach.shaded[patch.body][light] && patch.is_shaded(self.scene, source);
+            let most = patch.lit(source).min(self.reach.lit[patch.body][light]);
             let least = if is_shaded { 0.0 } else { patch.least_lit(source) };
-            Lit { least: least.min(most), most, is_shaded }
+            Lit { least: least.min(most), most, is_dark, is_shaded }
         };
-        lit(self.scene, patch).into_iter().enumerate().map(one).collect()
+        self.scene.sources.iter().enumerate().map(one).collect()
     }
 
     fn region(
@@ -226,11 +229,12 @@ impl Full<'_> {
         }
     }
 
-    /// The parts of a region that the camera may see; none where it cannot be cut, or has been often enough.
-    fn parts_of(&self, region: &Region) -> Vec<Region> {
-        let (Some((number, patch)), Some(between)) = (region.patch, self.between()) else { return Vec::new() };
-        if region.depth >= self.detail.depth {
-            return Vec::new();
+    /// The parts of a region that the camera may see; `None` where it cannot be cut, or has been often enough.
+    fn parts_of(&self, region: &Region) -> Option<Vec<Region>> {
+        let ((number, patch), between) = (region.patch?, self.between()?);
+        let parts = patch.quarters();
+        if region.depth >= self.detail.depth || parts.is_empty() {
+            return None;
         }
         let part = |patch: Patch| {
             let sight = between.exchange.sight(self.scene, &patch);
@@ -238,7 +242,7 @@ impl Full<'_> {
             let lit = self.lit_at(&patch);
             Self::region((number, patch), region.depth + 1, lit, &region.left, &region.further, most_of)
         };
-        patch.quarters().into_iter().map(part).collect()
+        Some(parts.into_iter().filter(|part| part.may_be_seen(self.scene)).map(part).collect())
     }
 
     /// Light by others beyond the ways whose colours are known.
@@ -267,8 +271,11 @@ impl Full<'_> {
         let mut parts = Parts { all: Vec::new(), pairs: Vec::new(), shades: Vec::new() };
         for one in &region.left.direct {
             let light = one.light;
-            let [least, most] =
-                if one.is_lobe { [0.0, self.reach.shining[region.body][light]] } else { region.lit[light].ends() };
+            let [least, most] = if one.is_lobe {
+                [0.0, self.reach.shining[region.body][light]]
+            } else {
+                region.lit[light].ends(plan.has(Effect::Shadow))
+            };
             if parts.pairs.last().is_none_or(|(last, _)| *last != light) {
                 parts.pairs.push((light, [None; 2]));
             }
