@@ -67,6 +67,11 @@ impl Choice {
         self.bounces
     }
 
+    /// How often light goes from body to body where that is drawn at all.
+    pub(super) fn bounces_drawn(&self) -> Bounces {
+        if self.has(Effect::Interreflection) { self.bounces } else { Bounces::Most(0) }
+    }
+
     /// Steps of the wavelength, nm.
     #[must_use]
     pub fn step_nm(&self) -> f64 {

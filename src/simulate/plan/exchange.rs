@@ -1,51 +1,79 @@
 //! A bound on the light that comes by way of other bodies.
 //!
-//! Each patch sees another in a share of its hemisphere that is bounded by the cones of their normals, the distance and the area, and
-//! all together in the whole of it at most. So the largest radiances of one order bound the irradiances of the next, wavelength by
-//! wavelength. The bound of an order is monotone and homogeneous in that of the one before: once all of it falls by a factor r in two
-//! orders, what follows is at most r / (1 - r) of them.
+//! Each patch sees another in a share of its hemisphere that is bounded by the cones of their normals, the distance and the area, all
+//! patches of a body together in the share of a ball about it, and all bodies in the whole of it at most. So the largest radiances of one
+//! order bound the irradiances of the next, wavelength by wavelength. The bound of an order is monotone and homogeneous in that of the
+//! one before: once all of it falls by a factor r in two orders, what follows is at most r / (1 - r) of them.
 
-use std::f64::consts::FRAC_1_PI;
+use std::f64::consts::{FRAC_1_PI, PI};
+use std::sync::OnceLock;
+
+use rayon::prelude::*;
 
 use super::super::material::OnGrid;
 use super::super::scene::{Bounces, Scene};
+use super::super::shape::{Plane, Shape};
 use super::super::vector::{dot, length, minus, scaled};
-use super::cone::Cone;
-use super::patch::{Extent, Patch, cut};
+use super::cone::{Cone, angle};
+use super::detail::Detail;
+use super::patch::{Extent, Patch, cut, planes};
 
 /// Orders after which no bound was found.
 const MOST_ORDERS: usize = 3000;
-/// Orders that are kept before the rest is bounded: at most, and numbers of all of them.
-const ORDERS: usize = 64;
+/// Numbers of all orders that are kept at most.
 const MOST_KEPT: usize = 6_000_000;
 /// What falls by less than this in every order is not bounded.
 const FALLS: f64 = 0.999;
 /// The rest over the first order that is not looked at any closer.
 const SMALL: f64 = 1e-2;
-/// Orders whose colours are told apart, and ways at most.
-const WAYS_OF_ORDERS: u32 = 4;
+/// Ways of one order at most.
 const MOST_WAYS: usize = 32;
 /// What roundings may take from a share.
 const ROUNDING: f64 = 1.0 + 1e-9;
+/// Patches from which on the work is worth threads.
+const WORTH_THREADS: usize = 64;
 
 /// Patches of a scene as light goes between them.
 pub(super) struct Exchange {
     pub(super) patches: Vec<Patch>,
     /// Whether the camera may see each.
     pub(super) is_seen: Vec<bool>,
-    /// Of each patch those that it sees, and the share of its hemisphere that each may take up.
-    shares: Vec<Vec<(usize, f64)>>,
+    /// Made where shares are asked for.
+    sights: OnceLock<Vec<Sight>>,
     /// \[patch\]\[light\]: largest irradiance over that of its spectrum.
     lit: Vec<Vec<f64>>,
+    bodies: Vec<Whole>,
+    /// \[plane without end\]\[patch\]: the side on which it is.
+    sides: Vec<Vec<i8>>,
 }
 
-/// Light that comes from a light over bodies of these materials, the last first.
-#[derive(Clone)]
+/// What a patch may see at most.
+pub(super) struct Sight {
+    /// Of each patch the share of the hemisphere.
+    shares: Vec<f64>,
+    /// The same of each body.
+    most: Vec<f64>,
+}
+
+/// What is said of a body as others see it.
+enum Whole {
+    /// It is held by a ball.
+    Ball([f64; 3], f64),
+    /// It is held by a ball, and its normals are these two.
+    Flat([f64; 3], f64, [f64; 3]),
+    Plane(Plane),
+}
+
+/// Light that comes from a light over bodies of these materials, the last first; those that send on all wavelengths alike are not told
+/// apart.
 pub(super) struct Way {
-    pub(super) materials: Vec<usize>,
     pub(super) light: usize,
+    pub(super) order: u32,
+    pub(super) materials: Vec<usize>,
     /// Its largest share at each patch.
     pub(super) most: Vec<f64>,
+    /// What it is sent by: patches and the values of each, the brightest first.
+    sent: Vec<Vec<(usize, f64)>>,
 }
 
 /// Largest irradiances of the patches by light that has gone from body to body, once, twice and so on.
@@ -53,6 +81,13 @@ pub(super) struct Orders {
     each: Vec<Vec<Vec<f64>>>,
     /// All that follows on them; `None` where nothing was looked for.
     rest: Option<Vec<Vec<f64>>>,
+}
+
+/// The share of all wavelengths alike that a material sends on, if it does.
+pub(super) fn grey(material: &OnGrid) -> Option<f64> {
+    let first = *material.elastic.first()?;
+    let is_level = first >= 0.0 && material.elastic.iter().all(|rho| *rho == first);
+    (material.luminescence.is_none() && is_level).then_some(first)
 }
 
 /// pi times the radiance of a material under an irradiance; noise below 0 counts in full.
@@ -64,6 +99,49 @@ pub(super) fn radiated(material: &OnGrid, incident: &[f64]) -> Vec<f64> {
         }
     }
     out
+}
+
+impl Whole {
+    fn of(shape: &Shape) -> Self {
+        let (centre, radius) = shape.around().unwrap_or(([0.0; 3], f64::INFINITY));
+        match shape {
+            Shape::Plane(plane) if plane.rectangle.is_none() => Self::Plane(*plane),
+            Shape::Plane(plane) => Self::Flat(centre, radius, plane.normal),
+            _ => Self::Ball(centre, radius),
+        }
+    }
+
+    /// The largest share of the hemisphere of any place of a patch that it takes up.
+    fn most_seen(&self, from: &Patch) -> f64 {
+        let Extent::Within(near) = from.extent else { return 1.0 };
+        // A flat one lies in the part of the hemisphere that its plane cuts off.
+        let tilt = |normal: [f64; 3], point: [f64; 3]| {
+            let height = dot(minus(from.centre, point), normal);
+            if height.abs() <= from.reach(normal) {
+                return 1.0;
+            }
+            let down = scaled(normal, -height.signum());
+            ROUNDING * f64::midpoint(1.0, from.normals.most_cosine_of_any(&Cone::of(down)))
+        };
+        match self {
+            Self::Plane(plane) => tilt(plane.normal, plane.point),
+            Self::Flat(centre, radius, normal) => ball_seen(from, near, *centre, *radius).min(tilt(*normal, *centre)),
+            Self::Ball(centre, radius) => ball_seen(from, near, *centre, *radius),
+        }
+        .min(1.0)
+    }
+}
+
+/// The largest share that a ball takes up as seen from a patch.
+fn ball_seen(from: &Patch, near: f64, centre: [f64; 3], radius: f64) -> f64 {
+    let way = minus(centre, from.centre);
+    let far = length(way);
+    if far - near <= radius {
+        return 1.0;
+    }
+    let off = angle(from.normals.axis, scaled(way, 1.0 / far));
+    let least = off - from.normals.half - (near / far).min(1.0).asin() - 1e-9;
+    of_ball(radius / (far - near), least.clamp(0.0, PI))
 }
 
 /// The largest share of the hemisphere, weighed by cosines, of any place of one patch that another takes up.
@@ -97,7 +175,7 @@ fn share(from: &Patch, of: &Patch) -> f64 {
                 return tilt.min(1.0);
             }
             let by_area = cosines[0] * cosines[1] * of.area * FRAC_1_PI / (nearest - radius).powi(2);
-            of_ball(radius / nearest, cosines[0]).min(by_area * ROUNDING).min(tilt)
+            ball_seen(from, near, of.centre, radius).min(by_area * ROUNDING).min(tilt)
         }
         (Extent::Within(_), Extent::Beyond(hole)) => {
             let (height, aside) = of.above_plane(from.centre);
@@ -129,33 +207,65 @@ fn share(from: &Patch, of: &Patch) -> f64 {
             if far <= radius {
                 return 1.0;
             }
-            of_ball(radius / far, (top / (far - radius)).min(1.0))
+            of_ball(radius / far, (top / (far - radius)).min(1.0).acos())
         }
         (Extent::Beyond(_), Extent::Beyond(_)) => 1.0,
     }
 }
 
-/// The share of a ball of this radius over its distance, no part of which stands at a greater cosine.
-fn of_ball(sine: f64, cosine: f64) -> f64 {
+/// The share of a ball of this radius over its distance, the middle of which stands at this angle from the normal (Snyder 1969). It
+/// grows with the ball, and falls with the angle.
+fn of_ball(sine: f64, theta: f64) -> f64 {
     let square = sine * sine;
-    // 2 (1 - cos), without the difference.
-    let solid = 2.0 * square / (1.0 + (1.0 - square).max(0.0).sqrt());
-    (ROUNDING * square.min(cosine * solid)).min(1.0)
+    let (sin, cos) = theta.sin_cos();
+    if cos >= sine {
+        return (ROUNDING * square * cos).min(1.0);
+    }
+    if cos <= -sine {
+        return 0.0;
+    }
+    // Part of it is below the horizon.
+    let cotangent = (1.0 - square).max(0.0).sqrt();
+    let y = (-cotangent / sine * cos / sin).clamp(-1.0, 1.0);
+    let across = sin * (1.0 - y * y).sqrt();
+    let above = square * (cos * y.acos() - cotangent / sine * across) + (across * sine / cotangent).atan();
+    (ROUNDING * FRAC_1_PI * above + 1e-12).clamp(0.0, 1.0)
 }
 
 impl Exchange {
-    pub(super) fn new(scene: &Scene, most: usize) -> Self {
-        let patches = cut(scene, most);
-        let sees = |from: &Patch| {
-            let all = patches.iter().enumerate().map(|(number, of)| (number, share(from, of)));
-            all.filter(|(_, share)| *share > 0.0).collect()
-        };
-        Self {
+    pub(super) fn new(scene: &Scene, detail: &Detail) -> Self {
+        let patches = cut(scene, detail.patches);
+        let mut all = Self {
             is_seen: patches.iter().map(|patch| patch.may_be_seen(scene)).collect(),
-            shares: patches.iter().map(sees).collect(),
-            lit: patches.iter().map(|patch| scene.sources.iter().map(|source| patch.lit(source)).collect()).collect(),
+            lit: Vec::new(),
+            sights: OnceLock::new(),
+            bodies: scene.bodies.iter().map(|body| Whole::of(&body.shape)).collect(),
+            sides: planes(scene)
+                .map(|(number, plane)| patches.iter().map(|patch| patch.side(number, plane)).collect())
+                .collect(),
             patches,
-        }
+        };
+        all.lit = all.patches.iter().map(|patch| lit(scene, patch)).collect();
+        all
+    }
+
+    fn sights(&self, scene: &Scene) -> &[Sight] {
+        self.sights.get_or_init(|| self.for_each_patch(|patch| self.sight(scene, &self.patches[patch])))
+    }
+
+    fn for_each_patch<A: Send>(&self, of: impl Fn(usize) -> A + Sync + Send) -> Vec<A> {
+        let count = self.patches.len();
+        if count < WORTH_THREADS { (0..count).map(of).collect() } else { (0..count).into_par_iter().map(of).collect() }
+    }
+
+    /// What a patch sees, of these or another.
+    pub(super) fn sight(&self, scene: &Scene, from: &Patch) -> Sight {
+        let sides: Vec<i8> = planes(scene).map(|(number, plane)| from.side(number, plane)).collect();
+        let is_apart = |of: usize| sides.iter().zip(&self.sides).any(|(own, all)| own * all[of] < 0);
+        let share_of = |(number, of): (usize, &Patch)| if is_apart(number) { 0.0 } else { share(from, of) };
+        let shares = self.patches.iter().enumerate().map(share_of).collect();
+        let most = |(number, body): (usize, &Whole)| if number == from.body { 1.0 } else { body.most_seen(from) };
+        Sight { shares, most: self.bodies.iter().enumerate().map(most).collect() }
     }
 
     /// False where a light stands on a body.
@@ -163,56 +273,108 @@ impl Exchange {
         self.lit.iter().flatten().all(|value| value.is_finite())
     }
 
-    /// The largest sum that a patch gets of what others send, from those patches that are asked for.
-    fn gathered(&self, patch: usize, sent: &[f64], is_of: impl Fn(usize) -> bool) -> f64 {
-        let seen = self.shares[patch].iter().filter(|(of, _)| sent[*of] > 0.0 && is_of(self.patches[*of].body));
-        let mut seen: Vec<(f64, f64)> = seen.map(|(of, share)| (sent[*of], *share)).collect();
-        seen.sort_by(|a, b| b.0.total_cmp(&a.0));
-        // The brightest first, until the hemisphere is full.
-        let mut left = 1.0_f64;
-        seen.into_iter().fold(0.0, |sum, (value, share)| {
-            let taken = share.min(left);
+    /// The largest sum that a patch gets of what others send.
+    fn gathered(&self, sight: &Sight, sent: &[(usize, f64)]) -> f64 {
+        let (mut left, mut of_body) = (1.0_f64, sight.most.clone());
+        let mut sum = 0.0;
+        // The brightest first, until the share of its body or the hemisphere is full.
+        for (of, value) in sent {
+            let body = &mut of_body[self.patches[*of].body];
+            let taken = sight.shares[*of].min(*body).min(left);
             left -= taken;
-            sum + taken * value
-        })
+            *body -= taken;
+            sum += taken * value;
+            if left <= 0.0 {
+                break;
+            }
+        }
+        sum
+    }
+
+    /// The largest share of a way at a patch that sees this.
+    pub(super) fn by_way(&self, sight: &Sight, way: &Way) -> f64 {
+        way.sent.iter().map(|sent| self.gathered(sight, sent)).sum()
     }
 
     /// The ways of the first orders, and how many orders they are.
-    pub(super) fn ways(&self, scene: &Scene) -> (Vec<Way>, u32) {
-        let materials = scene.materials.len();
-        let lit = |light: usize| self.lit.iter().map(|list| list[light]).collect();
-        let mut last: Vec<Way> =
-            (0..scene.sources.len()).map(|light| Way { materials: Vec::new(), light, most: lit(light) }).collect();
+    pub(super) fn ways(&self, scene: &Scene, materials: &[OnGrid], most: u32) -> (Vec<Way>, u32) {
+        let direct = |light: usize| self.lit.iter().map(|list| list[light]).collect();
+        let none = |light: usize| Way { light, order: 0, materials: Vec::new(), most: direct(light), sent: Vec::new() };
+        let mut last: Vec<Way> = (0..scene.sources.len()).map(none).collect();
         let (mut all, mut orders) = (Vec::new(), 0);
-        while orders < WAYS_OF_ORDERS && last.len() * materials <= MOST_WAYS {
-            let further = |way: &Way, material: usize| {
-                let is_of = |body: usize| scene.bodies[body].material == material;
-                let most = (0..self.patches.len()).map(|patch| self.gathered(patch, &way.most, is_of)).collect();
-                Way { materials: [&[material][..], &way.materials].concat(), light: way.light, most }
+        let has_grey = materials.iter().any(|one| grey(one).is_some());
+        let coloured: Vec<usize> = (0..materials.len()).filter(|one| grey(&materials[*one]).is_none()).collect();
+        while orders < most && last.len() * (coloured.len() + usize::from(has_grey)) <= MOST_WAYS {
+            let mut next: Vec<Way> = Vec::new();
+            let mut send = |way: &Way, last: Option<usize>| {
+                let sent = self.sent(way, |patch| {
+                    let material = scene.bodies[self.patches[patch].body].material;
+                    match last {
+                        None => grey(&materials[material]).unwrap_or(0.0),
+                        Some(one) => f64::from(u8::from(one == material)),
+                    }
+                });
+                let over = last.into_iter().chain(way.materials.iter().copied()).collect();
+                add(&mut next, way.light, orders + 1, over, sent);
             };
-            last = last.iter().flat_map(|way| (0..materials).map(move |material| further(way, material))).collect();
-            last.retain(|way| way.most.iter().any(|most| *most > 0.0));
-            all.extend(last.iter().cloned());
+            for way in &last {
+                send(way, None);
+                coloured.iter().for_each(|material| send(way, Some(*material)));
+            }
+            for way in &mut next {
+                way.most = self.for_each_patch(|patch| self.by_way(&self.sights(scene)[patch], way));
+            }
+            next.retain(|way| way.most.iter().any(|most| *most > 0.0));
+            all.append(&mut last);
+            last = next;
             orders += 1;
         }
+        all.append(&mut last);
+        all.retain(|way| way.order > 0);
         (all, orders)
     }
 
+    /// What the patches send on of a way, the brightest first.
+    fn sent(&self, way: &Way, part: impl Fn(usize) -> f64) -> Vec<(usize, f64)> {
+        let mut sent: Vec<(usize, f64)> =
+            way.most.iter().enumerate().map(|(patch, most)| (patch, most * part(patch))).collect();
+        sent.retain(|(_, value)| *value > 0.0);
+        sent.sort_by(|a, b| b.1.total_cmp(&a.1));
+        sent
+    }
+
     /// The orders of a scene that asks for so many; `None` where they do not fall.
-    pub(super) fn orders(&self, materials: &[&OnGrid], lights: &[Vec<f64>], bounces: Bounces) -> Option<Orders> {
+    pub(super) fn orders(
+        &self,
+        scene: &Scene,
+        materials: &[OnGrid],
+        lights: &[Vec<f64>],
+        bounces: Bounces,
+        most: usize,
+    ) -> Option<Orders> {
         let count = lights.first().map_or(0, Vec::len);
         let direct = |lit: &Vec<f64>| -> Vec<f64> {
             (0..count).map(|j| lit.iter().zip(lights).map(|(lit, light)| lit * light[j].abs()).sum()).collect()
         };
         let mut last: Vec<Vec<f64>> = self.lit.iter().map(direct).collect();
         let mut each: Vec<Vec<Vec<f64>>> = Vec::new();
-        let most = (MOST_KEPT / (1 + self.patches.len() * count)).clamp(4, ORDERS);
+        let most = most.min((MOST_KEPT / (1 + self.patches.len() * count)).max(1));
         let asked = match bounces {
             Bounces::All => usize::MAX,
             Bounces::Most(most) => most as usize,
         };
+        let is_used = |number: &usize| scene.bodies.iter().any(|body| body.material == *number);
+        let used: Vec<&OnGrid> = (0..materials.len()).filter(is_used).map(|number| &materials[number]).collect();
+        if most == 0 {
+            // The brightest anywhere, for all patches alike.
+            let order = brightest(&used, &brightest_of(&last));
+            let each = vec![vec![order; last.len()]];
+            let rest = if asked > 1 { Some(rest_anywhere(&used, &each[0])?) } else { None };
+            return Some(Orders { each, rest });
+        }
+        let of: Vec<&OnGrid> = scene.bodies.iter().map(|body| &materials[body.material]).collect();
         while each.len() < most.min(asked) {
-            last = self.next(materials, &last);
+            last = self.next(self.sights(scene), &of, &last);
             each.push(last.clone());
             if let Some(rest) = rest(&each).filter(|rest| largest(rest) <= SMALL * largest(&each[0])) {
                 return Some(Orders { each, rest: Some(rest) });
@@ -221,40 +383,45 @@ impl Exchange {
         if each.len() >= asked {
             return Some(Orders { each, rest: None });
         }
-        let rest = rest(&each).or_else(|| rest_anywhere(materials, &last))?;
+        // The sizes of single patches grow with what is not known of them; that of all has the energy as its limit.
+        let rest = match (rest(&each), rest_anywhere(&used, &last)) {
+            (Some(mut rest), Some(anywhere)) => {
+                rest.iter_mut().flatten().zip(anywhere.iter().flatten()).for_each(|(a, b)| *a = a.min(*b));
+                rest
+            }
+            (one, other) => one.or(other)?,
+        };
         Some(Orders { each, rest: Some(rest) })
     }
 
-    fn next(&self, materials: &[&OnGrid], incident: &[Vec<f64>]) -> Vec<Vec<f64>> {
+    fn next(&self, sights: &[Sight], materials: &[&OnGrid], incident: &[Vec<f64>]) -> Vec<Vec<f64>> {
         let sent: Vec<Vec<f64>> =
-            self.patches.iter().zip(incident).map(|(patch, e)| radiated(materials[patch.body], e)).collect();
-        let rank: Vec<f64> = sent.iter().map(|list| list.iter().sum()).collect();
-        let count = incident.first().map_or(0, Vec::len);
-        let one = |seen: &Vec<(usize, f64)>| {
-            // The largest sum of shares times radiances, with shares that fill one hemisphere, is at most t plus the sum of what is
-            // above t, for any t of each wavelength: that of the patch with which the brightest have filled it is nearly the best.
-            let mut sum = vec![0.0; count];
-            if seen.iter().map(|(_, share)| share).sum::<f64>() > 1.0 {
-                let mut order = seen.clone();
-                order.sort_by(|a, b| rank[b.0].total_cmp(&rank[a.0]));
-                let mut full = 0.0;
-                let last = order.into_iter().find(|(_, share)| {
-                    full += share;
-                    full >= 1.0
-                });
-                if let Some((last, _)) = last {
-                    sum.clone_from(&sent[last]);
-                }
-            }
-            let level = sum.clone();
-            for (of, share) in seen {
-                for ((sum, value), level) in sum.iter_mut().zip(&sent[*of]).zip(&level) {
-                    *sum += share * (value - level).max(0.0);
-                }
-            }
-            sum
+            self.for_each_patch(|patch| radiated(materials[self.patches[patch].body], &incident[patch]));
+        let at = |j: usize| {
+            let mut sent: Vec<(usize, f64)> = sent.iter().map(|list| list[j]).enumerate().collect();
+            sent.retain(|(_, value)| *value > 0.0);
+            sent.sort_by(|a, b| b.1.total_cmp(&a.1));
+            sent
         };
-        self.shares.iter().map(one).collect()
+        let at_each: Vec<Vec<(usize, f64)>> = (0..incident.first().map_or(0, Vec::len)).map(at).collect();
+        self.for_each_patch(|patch| at_each.iter().map(|sent| self.gathered(&sights[patch], sent)).collect())
+    }
+}
+
+/// Largest irradiances of a patch by each light.
+fn lit(scene: &Scene, patch: &Patch) -> Vec<f64> {
+    let one = |source| if patch.is_dark(scene, source) { 0.0 } else { patch.lit(source) };
+    scene.sources.iter().map(one).collect()
+}
+
+/// Adds what is sent to the way over these materials.
+fn add(ways: &mut Vec<Way>, light: usize, order: u32, materials: Vec<usize>, sent: Vec<(usize, f64)>) {
+    if sent.is_empty() {
+        return;
+    }
+    match ways.iter_mut().find(|way| way.light == light && way.materials == materials) {
+        Some(way) => way.sent.push(sent),
+        None => ways.push(Way { light, order, materials, most: Vec::new(), sent: vec![sent] }),
     }
 }
 
@@ -287,14 +454,10 @@ fn rest(each: &[Vec<Vec<f64>>]) -> Option<Vec<Vec<f64>>> {
 /// The same by the brightest patch of each order alone, which no material makes brighter: for scenes where some part of the light
 /// goes on for long at a place and dies soon at another.
 fn rest_anywhere(materials: &[&OnGrid], last: &[Vec<f64>]) -> Option<Vec<Vec<f64>>> {
-    let count = last.first().map_or(0, Vec::len);
-    let mut order: Vec<f64> = (0..count).map(|j| last.iter().map(|list| list[j]).fold(0.0, f64::max)).collect();
-    let mut sum = vec![0.0; count];
+    let mut order = brightest_of(last);
+    let mut sum = vec![0.0; order.len()];
     for _ in 0..MOST_ORDERS {
-        let mut next = vec![0.0; count];
-        for material in materials {
-            next.iter_mut().zip(radiated(material, &order)).for_each(|(most, value)| *most = f64::max(*most, value));
-        }
+        let next = brightest(materials, &order);
         let falls = ratio(next.iter(), order.iter());
         order = next;
         sum.iter_mut().zip(&order).for_each(|(sum, value)| *sum += value);
@@ -306,14 +469,27 @@ fn rest_anywhere(materials: &[&OnGrid], last: &[Vec<f64>]) -> Option<Vec<Vec<f64
     None
 }
 
+/// The largest that any of these materials radiates at each wavelength.
+fn brightest(materials: &[&OnGrid], incident: &[f64]) -> Vec<f64> {
+    let all: Vec<Vec<f64>> = materials.iter().map(|material| radiated(material, incident)).collect();
+    brightest_of(&all)
+}
+
+/// The largest of these lists at each wavelength.
+pub(super) fn brightest_of(lists: &[Vec<f64>]) -> Vec<f64> {
+    let count = lists.first().map_or(0, Vec::len);
+    (0..count).map(|j| lists.iter().map(|list| list[j]).fold(0.0, f64::max)).collect()
+}
+
 impl Orders {
-    /// The sum of all that has gone from body to body more than `kept` times, and not more often than the scene asks for.
-    pub(super) fn beyond(&self, kept: u32, bounces: Bounces) -> Vec<Vec<f64>> {
-        let (kept, stored) = (kept as usize, self.each.len());
-        let most = match bounces {
+    /// The sum of all that has gone from body to body more than `after` times and at most `most` times, and not more often than the
+    /// scene asks for.
+    pub(super) fn between(&self, after: u32, most: Bounces, bounces: Bounces) -> Vec<Vec<f64>> {
+        let number = |bounces: Bounces| match bounces {
             Bounces::All => usize::MAX,
             Bounces::Most(most) => most as usize,
         };
+        let (after, most, stored) = (after as usize, number(most).min(number(bounces)), self.each.len());
         let mut sum: Vec<Vec<f64>> =
             self.each.first().into_iter().flatten().map(|list| vec![0.0; list.len()]).collect();
         let mut add = |order: &[Vec<f64>]| {
@@ -321,10 +497,10 @@ impl Orders {
                 *sum += order;
             }
         };
-        for order in self.each.iter().take(most.min(stored)).skip(kept) {
+        for order in self.each.iter().take(most.min(stored)).skip(after) {
             add(order);
         }
-        if let Some(rest) = self.rest.as_ref().filter(|_| most > stored.max(kept)) {
+        if let Some(rest) = self.rest.as_ref().filter(|_| most > stored.max(after)) {
             add(rest);
         }
         sum

@@ -32,9 +32,10 @@ pub(super) struct Largest {
 
 /// A bound so close to what occurs is close enough.
 const CLOSE: f64 = 1.1;
-/// Most boxes looked at, and most factors of all of them.
+/// Most boxes looked at.
 const BOXES: usize = 3000;
-const BOXES_TIMES_FACTORS: usize = 10_000;
+/// What roundings, and ends that are nearly one, may take from a slope.
+const SURE: f64 = 1e-4;
 /// (6/29)^3 and (29/6)^2 / 3.
 const EDGE: f64 = 216.0 / 24_389.0;
 const SLOPE: f64 = 841.0 / 108.0;
@@ -49,7 +50,8 @@ fn slope(t: f64) -> f64 {
 
 /// CIELAB distance for differences of f in X, Y and Z.
 fn distance([x, y, z]: [f64; 3]) -> f64 {
-    (116.0 * y).hypot(500.0 * (x - y)).hypot(200.0 * (y - z))
+    let [lightness, a, b] = [116.0 * y, 500.0 * (x - y), 200.0 * (y - z)];
+    (lightness * lightness + a * a + b * b).sqrt()
 }
 
 /// CIELAB distance of two colours, XYZ over that of white.
@@ -98,15 +100,33 @@ pub(super) struct Interest {
 impl Interest {
     /// In every distance.
     pub(super) const ALL: Self = Self { floor: 0.0, ceiling: f64::INFINITY };
+}
+
+/// How it is looked at.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Look {
+    pub(super) interest: Interest,
+    /// Factors times boxes at most.
+    pub(super) boxes: usize,
+    /// Whether there may be any amount of other light, of any colour, in both pictures.
+    pub(super) has_more: bool,
+}
+
+impl Look {
+    /// In every distance, closely.
+    #[cfg(test)]
+    const ALL: Self = Self { interest: Interest::ALL, boxes: 10_000, has_more: false };
 
     /// Where so large a distance is known already.
     pub(super) fn above(self, known: f64) -> Self {
-        Self { floor: self.floor.max(known), ..self }
+        let interest = Interest { floor: self.interest.floor.max(known), ..self.interest };
+        Self { interest, ..self }
     }
 }
 
 /// Bounds the distance over all factors.
-pub(super) fn largest(factors: &[Factor], Interest { floor, ceiling }: Interest) -> Largest {
+pub(super) fn largest(factors: &[Factor], look: Look) -> Largest {
+    let Interest { floor, ceiling } = look.interest;
     let black = Largest { bound: 0.0, at: [[0.0; 3]; 2] };
     let factors: Vec<Factor> = factors
         .iter()
@@ -122,8 +142,8 @@ pub(super) fn largest(factors: &[Factor], Interest { floor, ceiling }: Interest)
     let high: Vec<f64> = factors.iter().map(|one| one.most).collect();
     let mut best = (0.0, [[0.0; 3]; 2]);
     let low: Vec<f64> = factors.iter().map(|one| one.least).collect();
-    let mut boxes = BinaryHeap::from([on(&factors, low, high, &mut best)]);
-    for _ in 0..BOXES.min(BOXES_TIMES_FACTORS / factors.len()) {
+    let mut boxes = BinaryHeap::from([on(&factors, low, high, look.has_more, &mut best)]);
+    for _ in 0..BOXES.min(look.boxes / factors.len()) {
         // The last is for values that it does not matter for.
         let close = if ceiling.is_finite() { 0.0 } else { CLOSE * best.0 };
         let enough = floor.max(close).max(1e-9);
@@ -144,7 +164,7 @@ pub(super) fn largest(factors: &[Factor], Interest { floor, ceiling }: Interest)
         below[side] = middle;
         above[side] = middle;
         for (low, high) in [(whole.low, below), (above, whole.high)] {
-            let half = on(&factors, low, high, &mut best);
+            let half = on(&factors, low, high, look.has_more, &mut best);
             // What is proven below a distance that occurs needs no more looking at.
             if half.bound > best.0.max(floor) {
                 boxes.push(half);
@@ -161,7 +181,7 @@ fn sum(factors: &[Factor], low: &[f64], c: usize) -> f64 {
     factors.iter().zip(low).map(|(one, g)| g * (one.kept[c] + one.left_out[c]).abs()).sum()
 }
 
-fn on(factors: &[Factor], low: Vec<f64>, high: Vec<f64>, best: &mut (f64, [[f64; 3]; 2])) -> Box_ {
+fn on(factors: &[Factor], low: Vec<f64>, high: Vec<f64>, has_more: bool, best: &mut (f64, [[f64; 3]; 2])) -> Box_ {
     let colour = |g: &dyn Fn(usize) -> f64| {
         let sum = |of: &dyn Fn(&Factor) -> [f64; 3], c: usize| {
             factors.iter().enumerate().map(|(k, one)| g(k) * of(one)[c]).sum::<f64>()
@@ -175,26 +195,88 @@ fn on(factors: &[Factor], low: Vec<f64>, high: Vec<f64>, best: &mut (f64, [[f64;
             *best = (found, at);
         }
     }
-    let between = |of: &dyn Fn(&Factor) -> f64| {
-        factors.iter().enumerate().fold((0.0, 0.0), |(least, most), (k, one)| {
-            let (a, b) = (low[k] * of(one), high[k] * of(one));
-            (least + a.min(b), most + a.max(b))
-        })
-    };
-    let difference = |c: usize| {
-        let kept = between(&|one| one.kept[c]);
-        let full = between(&|one| one.kept[c] + one.left_out[c]);
-        let apart = between(&|one| one.left_out[c]);
-        let (steep, flat) = (slope(kept.0.min(full.0)), slope(kept.1.max(full.1)));
-        let least = (f(full.0) - f(kept.1)).max((apart.0 * steep).min(apart.0 * flat));
-        let most = (f(full.1) - f(kept.0)).min((apart.1 * steep).max(apart.1 * flat));
-        (least, most.max(least))
-    };
-    let ends = [difference(0), difference(1), difference(2)];
+    let mut ranges = [[Range::ZERO; 3]; 3];
+    for (k, one) in factors.iter().enumerate() {
+        for (c, [kept, full, apart]) in ranges.iter_mut().enumerate() {
+            kept.add(low[k], high[k], one.kept[c]);
+            full.add(low[k], high[k], one.kept[c] + one.left_out[c]);
+            apart.add(low[k], high[k], one.left_out[c]);
+        }
+    }
+    let bound = by_channels(&ranges, has_more).min(by_slopes(factors, &low, &high, &ranges, has_more));
+    Box_ { low, high, bound }
+}
+
+/// Between which values a sum lies.
+#[derive(Debug, Clone, Copy)]
+struct Range {
+    low: f64,
+    high: f64,
+}
+
+impl Range {
+    const ZERO: Self = Self { low: 0.0, high: 0.0 };
+
+    /// A value times a factor between these.
+    fn add(&mut self, low: f64, high: f64, value: f64) {
+        let (a, b) = (low * value, high * value);
+        self.low += a.min(b);
+        self.high += a.max(b);
+    }
+
+    fn most(self) -> f64 {
+        self.high.max(-self.low)
+    }
+}
+
+/// A bound by the differences of f in X, Y and Z, each by itself; the ranges are those of what is kept, of the whole and of what is
+/// left out.
+fn by_channels(ranges: &[[Range; 3]; 3], has_more: bool) -> f64 {
+    let ends = ranges.map(|[kept, full, apart]| {
+        let (steep, flat) = (slope(kept.low.min(full.low)), slope(kept.high.max(full.high)));
+        let least = (f(full.low) - f(kept.high)).max((apart.low * steep).min(apart.low * flat));
+        let most = (f(full.high) - f(kept.low)).min((apart.high * steep).max(apart.high * flat));
+        // The more there is beside it, the less is seen of it.
+        if has_more { (least.min(0.0), most.max(0.0)) } else { (least, most.max(least)) }
+    });
     // The distance is convex in the differences: on a box it is largest at a corner.
     let corner = |which: usize| [0, 1, 2].map(|c| if which >> c & 1 == 0 { ends[c].0 } else { ends[c].1 });
-    let bound = (0..8).map(|which| distance(corner(which))).fold(0.0, f64::max);
-    Box_ { low, high, bound }
+    (0..8).map(|which| distance(corner(which))).fold(0.0, f64::max)
+}
+
+/// A bound by what is left out times the slopes of f between what is kept and the whole. It is convex in the slopes, and for given slopes
+/// each of L*, a* and b* is a sum over the factors: so a colour that is left out stays the colour that it is.
+fn by_slopes(factors: &[Factor], low: &[f64], high: &[f64], ranges: &[[Range; 3]; 3], has_more: bool) -> f64 {
+    let slopes = ranges.map(|[kept, full, _]| {
+        let flat = if has_more { 0.0 } else { secant(kept.high, full.high) * (1.0 - SURE) };
+        [flat, secant(kept.low, full.low) * (1.0 + SURE)]
+    });
+    let most = |of: &dyn Fn(&[f64; 3]) -> f64| {
+        let mut range = Range::ZERO;
+        factors
+            .iter()
+            .zip(low.iter().zip(high))
+            .for_each(|(one, (low, high))| range.add(*low, *high, of(&one.left_out)));
+        range.most()
+    };
+    let at = |y: f64| {
+        let lightness = 116.0 * most(&|left| y * left[1]);
+        let a = slopes[0].map(|x| 500.0 * most(&|left| x * left[0] - y * left[1]));
+        let b = slopes[2].map(|z| 200.0 * most(&|left| y * left[1] - z * left[2]));
+        let (a, b) = (a[0].max(a[1]), b[0].max(b[1]));
+        (lightness * lightness + a * a + b * b).sqrt()
+    };
+    at(slopes[1][0]).max(at(slopes[1][1]))
+}
+
+/// The slope of f from one value to another; f turns away from its tangents, so that it falls with both.
+fn secant(from: f64, to: f64) -> f64 {
+    let apart = to - from;
+    if from.max(to) <= EDGE {
+        return SLOPE;
+    }
+    // Too near for a difference, the slope of either end is as good.
+    if apart.abs() <= 1e-5 * from.abs().max(to.abs()) { slope(from.min(to)) } else { (f(to) - f(from)) / apart }
 }
 
 #[cfg(test)]
@@ -221,7 +303,7 @@ mod tests {
                     }
                 })
                 .collect();
-            let found = largest(&factors, Interest::ALL);
+            let found = largest(&factors, Look::ALL);
             let mut most = 0.0_f64;
             for _ in 0..2000 {
                 let g: Vec<f64> = factors

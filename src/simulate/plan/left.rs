@@ -1,15 +1,15 @@
 //! What is left out of a body, as colours and spectra under each light.
 
 use std::f64::consts::FRAC_1_PI;
-use std::ops::Range;
+use std::rc::Rc;
 
 use super::super::choice::Choice;
 use super::super::effect::Effect;
-use super::super::picture::{Kept, Prepared};
-use super::super::transport::{Act, Spectra};
-use super::exchange::{Way, radiated};
-use super::full::Full;
+use super::super::scene::Bounces;
+use super::exchange::radiated;
+use super::full::{Full, Indirect};
 use super::reach::mirror;
+use super::stepped::{Acts, Stepped, done};
 
 /// What follows one factor of the geometry: cos(theta_i) of a light, or its lobe. XYZ are over those of white.
 pub(super) struct Direct {
@@ -20,45 +20,48 @@ pub(super) struct Direct {
     /// What the full picture has more of.
     pub(super) left_out: [f64; 3],
     /// Spectrum of what is left out.
-    pub(super) lost: Vec<f64>,
+    pub(super) lost: Rc<Vec<f64>>,
     /// Spectrum of all: what a shadow takes that is not drawn.
-    pub(super) all: Vec<f64>,
+    pub(super) all: Rc<Vec<f64>>,
 }
 
-/// Light that comes by a way, by its number.
-pub(super) struct ByWay {
-    pub(super) way: usize,
-    pub(super) xyz: [f64; 3],
-    pub(super) peak: Vec<f64>,
+/// Light of the same colours by some ways, by their numbers.
+pub(super) struct ByWays {
+    pub(super) ways: Vec<usize>,
+    is_drawn: bool,
+    pub(super) kept: [f64; 3],
+    pub(super) left_out: [f64; 3],
+    pub(super) lost: Rc<Vec<f64>>,
 }
 
 /// What is left out of a body.
 pub(super) struct LeftOut {
     pub(super) direct: Vec<Direct>,
-    /// Those ways that are not drawn.
-    pub(super) by_ways: Vec<ByWay>,
-}
-
-/// Colours of an act of a material under each light, with the spectrum of each.
-struct Acts {
-    xyz: Vec<[f64; 3]>,
-    spectra: Vec<Vec<f64>>,
+    pub(super) by_ways: Vec<ByWays>,
+    /// What the interface mirrors of other bodies at most.
+    pub(super) mirrored: Option<([f64; 3], Rc<Vec<f64>>)>,
 }
 
 impl Full<'_> {
-    pub(super) fn left_out(&self, body: usize, plan: &Choice, planned: &Prepared, known: Range<usize>) -> LeftOut {
+    pub(super) fn left_out(
+        &self,
+        body: usize,
+        plan: &Choice,
+        planned: &Stepped,
+        indirect: Option<&Indirect>,
+    ) -> LeftOut {
         let material = self.scene.bodies[body].material;
         LeftOut {
             direct: self.direct(material, plan, planned),
-            by_ways: if known.is_empty() { Vec::new() } else { self.by_ways(material, &known) },
+            by_ways: indirect.map_or_else(Vec::new, |_| self.by_ways(material, plan, planned)),
+            mirrored: indirect
+                .and_then(|indirect| self.mirrored(body, indirect))
+                .map(|(xyz, spectrum)| (xyz, Rc::new(spectrum))),
         }
     }
 
-    fn direct(&self, material: usize, plan: &Choice, planned: &Prepared) -> Vec<Direct> {
-        let all = |prepared: &Prepared| {
-            [Act::Luminescent, Act::Diffuse, Act::Specular].map(|act| self.acts(prepared, act, material))
-        };
-        let (full, less) = (all(&self.prepared), all(planned));
+    fn direct(&self, material: usize, plan: &Choice, planned: &Stepped) -> Vec<Direct> {
+        let (full, less) = (self.whole.acts(material), planned.acts(material));
         let is_stepped = plan.step_nm != self.choice.step_nm;
         let mut list = Vec::new();
         for (light, source) in self.scene.sources.iter().enumerate() {
@@ -74,21 +77,26 @@ impl Full<'_> {
                     }
                     xyz
                 };
-                let (kept, whole) = (sum(&less, &has), sum(&full, &|_| true));
+                let (kept, whole) = (sum(less, &has), sum(full, &|_| true));
                 // What is kept as it is cancels exactly.
                 let is_exact = |act: usize| has(act) && !is_stepped;
                 let left_out = match is_stepped {
                     _ if acts.iter().all(|act| is_exact(*act)) => [0.0; 3],
                     true => [0, 1, 2].map(|c| whole[c] - kept[c]),
-                    false => sum(&full, &|act| !has(act)),
+                    false => sum(full, &|act| !has(act)),
                 };
                 let spectrum = |counts: &dyn Fn(usize) -> bool| -> Vec<f64> {
                     let counted: Vec<&Vec<f64>> =
                         acts.iter().filter(|act| counts(**act)).map(|act| &full[*act].spectra[light]).collect();
                     (0..full[0].spectra[light].len()).map(|j| counted.iter().map(|list| list[j].abs()).sum()).collect()
                 };
-                let (lost, all) = (spectrum(&|act| !is_exact(act)), spectrum(&|_| true));
+                let (mut lost, all) = (spectrum(&|act| !is_exact(act)), spectrum(&|_| true));
+                for act in acts.iter().filter(|act| is_stepped && has(**act)) {
+                    let drawn = planned.beside(&less[*act].spectra[light], self.whole.prepared.grid.nm());
+                    lost.iter_mut().zip(drawn).for_each(|(lost, value)| *lost += value);
+                }
                 if whole != [0.0; 3] || kept != [0.0; 3] || lost.iter().any(|value| *value != 0.0) {
+                    let (lost, all) = (Rc::new(lost), Rc::new(all));
                     list.push(Direct { light, is_lobe: acts == [2], kept, left_out, lost, all });
                 }
             }
@@ -96,65 +104,80 @@ impl Full<'_> {
         list
     }
 
-    fn acts(&self, prepared: &Prepared, act: Act, material: usize) -> Acts {
-        let choice = self.choice;
-        let of = |kept: Kept| -> (Vec<f64>, usize) {
-            let spectra: Spectra<'_> = prepared.spectra(self.scene, &choice, kept);
-            let rows = spectra.before(&spectra.channels.concat(), act, material);
-            (spectra.through(&rows), spectra.channels.len())
-        };
-        let (colours, _) = of(Kept::Colour);
-        let (spectra, count) = of(Kept::Spectra);
-        Acts {
-            xyz: colours.chunks_exact(3).map(|xyz| self.over_white([xyz[0], xyz[1], xyz[2]])).collect(),
-            spectra: spectra.chunks_exact(count).map(<[f64]>::to_vec).collect(),
-        }
-    }
-
-    /// For each way its own colour.
-    fn by_ways(&self, material: usize, known: &Range<usize>) -> Vec<ByWay> {
-        let spectra = [Kept::Colour, Kept::Spectra].map(|kept| self.prepared.spectra(self.scene, &self.choice, kept));
-        let count = spectra[1].channels.len();
-        let ways = self.between().into_iter().flat_map(|between| &between.ways).enumerate();
-        let left = ways.filter(|(_, way)| known.contains(&(way.materials.len() - 1)));
-        let by_way = |(number, way): (usize, &Way)| {
-            let through = |spectra: &Spectra<'_>| {
-                let film = spectra.channels.concat();
-                let bodies = [&[material][..], &way.materials].concat();
-                let rows = bodies.iter().fold(film, |rows, material| spectra.before(&rows, Act::Body, *material));
-                spectra.through(&rows)
+    /// Colours of each way: what light does on it depends on the materials alone, with what is planned as in full.
+    fn by_ways(&self, material: usize, plan: &Choice, planned: &Stepped) -> Vec<ByWays> {
+        let Some(between) = self.between() else { return Vec::new() };
+        let ways = &between.ways;
+        let full = self.whole.by_ways(ways, true);
+        let less = planned.by_ways(ways, plan.has(Effect::Luminescence));
+        let acts = [plan.has(Effect::Luminescence), plan.has(Effect::Diffuse), false];
+        let is_stepped = plan.step_nm != self.choice.step_nm;
+        let mut all: Vec<ByWays> = Vec::new();
+        for (number, way) in ways.iter().enumerate().filter(|(_, way)| is_within(way.order, self.choice.bounces)) {
+            let is_drawn = is_within(way.order, plan.bounces_drawn())
+                && (plan.has(Effect::Surround) || !self.scene.sources[way.light].is_surround());
+            let is_same = |other: &&mut ByWays| {
+                let first = &ways[other.ways[0]];
+                (first.light, &first.materials) == (way.light, &way.materials) && other.is_drawn == is_drawn
             };
-            let [colours, lists] = [through(&spectra[0]), through(&spectra[1])];
-            let xyz = self.over_white([0, 1, 2].map(|c| colours[3 * way.light + c]));
-            let peak = lists[way.light * count..(way.light + 1) * count].iter().map(|value| value.abs()).collect();
-            ByWay { way: number, xyz, peak }
-        };
-        left.map(by_way).filter(|one| one.xyz != [0.0; 3]).collect()
-    }
-
-    /// The spectrum of radiance, and XYZ, that an irradiance by others makes at most.
-    pub(super) fn by_others(&self, body: usize, incident: &[f64], anywhere: &[Vec<f64>]) -> ([f64; 3], Vec<f64>) {
-        let on_grid = &self.prepared.materials[self.scene.bodies[body].material];
-        let mut sent = radiated(on_grid, incident);
-        if self.reach.has_interface[body] {
-            // The brightest that this interface may mirror.
-            let bodies = self.scene.bodies.iter().enumerate();
-            let lit = self.lit();
-            let mirror = mirror(self.scene, body);
-            for (other, one) in bodies.filter(|(other, _)| self.reach.seen[body][*other] > 0.0) {
-                let all: Vec<f64> = lit[other].iter().zip(&anywhere[other]).map(|(a, b)| a + b).collect();
-                let mirrored = radiated(&self.prepared.materials[one.material], &all);
-                for ((sum, value), c) in sent.iter_mut().zip(mirrored).zip(&on_grid.intensity) {
-                    *sum += c * value * mirror;
+            if let Some(same) = all.iter_mut().find(is_same) {
+                same.ways.push(number);
+                continue;
+            }
+            let whole = done(&self.whole.prepared.materials[material], &full[number], [true, true, false]);
+            let xyz = self.whole.colour(&whole);
+            let is_exact = is_drawn && !is_stepped && acts == [true, true, false];
+            let drawn = match is_drawn {
+                true => done(&planned.prepared.materials[material], &less[number], acts),
+                false => vec![0.0; planned.prepared.grid.nm().len()],
+            };
+            let kept = planned.colour(&drawn);
+            let left_out = if is_exact { [0.0; 3] } else { [0, 1, 2].map(|c| xyz[c] - kept[c]) };
+            let lost: Vec<f64> = match is_stepped {
+                _ if is_exact => Vec::new(),
+                true => {
+                    let beside = planned.beside(&drawn, self.whole.prepared.grid.nm());
+                    whole.iter().zip(beside).map(|(whole, drawn)| (whole.abs() + drawn) * FRAC_1_PI).collect()
                 }
+                false => whole.iter().zip(&drawn).map(|(whole, drawn)| (whole - drawn).abs() * FRAC_1_PI).collect(),
+            };
+            if xyz != [0.0; 3] || kept != [0.0; 3] || lost.iter().any(|value| *value != 0.0) {
+                all.push(ByWays { ways: vec![number], is_drawn, kept, left_out, lost: Rc::new(lost) });
             }
         }
-        let weights = &self.prepared.weights;
-        let sum = |c: usize| weights[c].iter().zip(&sent).map(|(weight, value)| weight * value).sum::<f64>();
-        (self.over_white([sum(0), sum(1), sum(2)]), sent.iter().map(|value| value * FRAC_1_PI).collect())
+        all
     }
 
-    fn over_white(&self, xyz: [f64; 3]) -> [f64; 3] {
-        [0, 1, 2].map(|c| xyz[c] / self.prepared.white[c])
+    /// X, Y, Z and the spectrum of radiance that an irradiance by others makes at most.
+    pub(super) fn by_others(stepped: &Stepped, material: usize, incident: &[f64]) -> ([f64; 3], Vec<f64>) {
+        at_most(stepped, &radiated(&stepped.prepared.materials[material], incident))
+    }
+
+    /// The brightest that the interface of a body may mirror of others.
+    fn mirrored(&self, body: usize, indirect: &Indirect) -> Option<([f64; 3], Vec<f64>)> {
+        if !self.reach.has_interface[body] {
+            return None;
+        }
+        let mirror = mirror(self.scene, body);
+        let intensity = &self.whole.prepared.materials[self.scene.bodies[body].material].intensity;
+        let mut sum = vec![0.0; intensity.len()];
+        let bodies = self.scene.bodies.iter().enumerate();
+        for (other, one) in bodies.filter(|(other, _)| self.reach.seen[body][*other] > 0.0) {
+            let sent = radiated(&self.whole.prepared.materials[one.material], &indirect.all[other]);
+            sum.iter_mut().zip(sent).zip(intensity).for_each(|((sum, value), c)| *sum += c * value * mirror);
+        }
+        sum.iter().any(|value| *value > 0.0).then(|| at_most(&self.whole, &sum))
+    }
+}
+
+fn at_most(stepped: &Stepped, sent: &[f64]) -> ([f64; 3], Vec<f64>) {
+    (stepped.colour(sent), sent.iter().map(|value| value * FRAC_1_PI).collect())
+}
+
+/// True where light that has gone from body to body so often is asked for.
+pub(super) fn is_within(order: u32, bounces: Bounces) -> bool {
+    match bounces {
+        Bounces::All => true,
+        Bounces::Most(most) => order <= most,
     }
 }

@@ -2,6 +2,7 @@
 
 mod bound;
 mod cone;
+mod detail;
 mod exchange;
 mod full;
 mod lab;
@@ -10,6 +11,7 @@ mod patch;
 mod reach;
 mod region;
 mod rings;
+mod stepped;
 
 pub use bound::Bound;
 pub(super) use lab::lab_distance;
@@ -17,11 +19,13 @@ pub(super) use lab::lab_distance;
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use self::detail::Detail;
 use self::full::Full;
 use super::alone::is_alone;
 use super::choice::Choice;
 use super::effect::Effect;
 use super::grid::NoGrid;
+use super::material::Material;
 use super::picture::{NoPicture, may_bounce};
 use super::scene::{Bounces, Scene};
 
@@ -73,16 +77,16 @@ pub struct Plan {
 pub fn plan(scene: &Scene, max_delta_e: f64) -> Result<Plan, NoPicture> {
     scene.check()?;
     let everything = Choice::everything(scene.bounces, scene.grid.step());
-    // Without a tolerance the bound of interreflection decides nothing: it may be wide, and must not take longer than a small part of
-    // the picture. Time goes with pairs of patches, and one pair takes about as long as 30 rays.
-    let patches = if max_delta_e > 0.0 { usize::MAX } else { (0.001 * cost(scene, &everything)).sqrt() as usize };
-    let full = Full::new(scene, everything, patches)?;
+    // Without a tolerance bounds decide nothing: they may be wide, and must not take longer than a small part of the picture.
+    let rays = cost(scene, &everything);
+    let detail = if max_delta_e > 0.0 { Detail::deciding(rays) } else { Detail::telling(rays, scene.bodies.len()) };
+    let full = Full::new(scene, everything, detail)?;
     let nothing: Vec<Effect> = Effect::ALL.iter().copied().filter(|effect| full.is_nothing(*effect)).collect();
     let base = Choice { by_pixel: false, ..nothing.iter().fold(everything, |choice, effect| choice.without(*effect)) };
     let alone: Vec<Bound> = Effect::ALL.iter().map(|effect| full.bound(&everything.without(*effect))).collect();
     let choice = if max_delta_e > 0.0 { cheapest(scene, &full, base, &alone, max_delta_e)? } else { base };
     let choice = if choice.bounces == Bounces::Most(0) { choice.without(Effect::Interreflection) } else { choice };
-    may_bounce(scene, &choice, &full.prepared)?;
+    may_bounce(scene, &choice, &full.whole.prepared)?;
     let mut bound = full.bound(&choice);
     if max_delta_e > 0.0 && choice != base {
         // That has been proven, by a closer look.
@@ -186,9 +190,7 @@ fn reason(
     }
     let is_single = matches!(scene.bodies.as_slice(), [only] if only.shape.is_convex());
     let text = match effect {
-        Effect::Luminescence
-            if scene.materials.iter().all(|one| one.surface.density.iter().all(|value| *value == 0.0)) =>
-        {
+        Effect::Luminescence if used(scene).all(|one| one.surface.density.iter().all(|value| *value == 0.0)) => {
             "no material luminesces"
         }
         Effect::Luminescence => "no light falls where a material is excited",
@@ -203,6 +205,11 @@ fn reason(
         Effect::Surround => "no light comes from all around",
     };
     text.to_owned()
+}
+
+/// Materials of bodies.
+fn used(scene: &Scene) -> impl Iterator<Item = &Material> {
+    scene.bodies.iter().map(|body| &scene.materials[body.material])
 }
 
 fn route(scene: &Scene, full: &Full<'_>, choice: &Choice) -> Vec<String> {
@@ -290,5 +297,5 @@ impl Plan {
 /// [`NoPicture`] for a scene that cannot be drawn.
 pub fn bound(scene: &Scene, choice: &Choice) -> Result<Bound, NoPicture> {
     scene.check()?;
-    Ok(Full::new(scene, Choice::everything(scene.bounces, scene.grid.step()), usize::MAX)?.bound(choice))
+    Ok(Full::new(scene, Choice::everything(scene.bounces, scene.grid.step()), Detail::FULL)?.bound(choice))
 }

@@ -30,19 +30,45 @@ pub(super) struct Patch {
     pub(super) area: f64,
     /// It sees no other patch of its body that is so, too.
     pub(super) is_convex: bool,
+    form: Form,
+}
+
+/// What a patch is a part of, where it can be cut further.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Form {
+    /// A field on a sphere.
+    Round(Field),
+    /// A rectangle.
+    Flat(Rectangle),
+    /// Anything.
+    Whole,
+}
+
+/// A part of a sphere as seen from its centre through one side of a cube, between angles along the two axes of that side.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Field {
+    ball: Ball,
+    side: Vector,
+    axes: [Vector; 2],
+    low: [f64; 2],
+    high: [f64; 2],
+    is_within: bool,
 }
 
 /// How finely bodies are cut: as many patches as a scene of so many bodies leaves time for, and about so many at most.
 fn fineness(bodies: usize, most: usize) -> usize {
     let by_bodies = match bodies {
-        0..=3 => 4,
-        4..=6 => 3,
+        0..=3 => 6,
+        4..=6 => 4,
         7..=16 => 2,
         17..=60 => 1,
         _ => 0,
     };
     (0..=by_bodies).rev().find(|fine| 8 * fine * fine * bodies <= most).unwrap_or(0)
 }
+
+/// Half the angle of normals, rad, from which on a patch is not taken for flat.
+const NOT_FLAT: f64 = 1e-9;
 
 /// Edges of the parts of a plane without end, in radii of what else there is.
 const EDGES: [&[f64]; 5] = [&[2.0], &[1.0, 4.0], &[0.6, 2.0, 8.0], &[0.3, 0.8, 2.0, 8.0], &[0.25, 0.5, 1.0, 2.5, 10.0]];
@@ -54,18 +80,18 @@ pub(super) fn cut(scene: &Scene, most: usize) -> Vec<Patch> {
     let mut all = Vec::new();
     for (number, body) in scene.bodies.iter().enumerate() {
         let mut cutter = Cutter { body: number, all: &mut all };
-        if fine == 0 && !matches!(body.shape, Shape::Plane(_)) {
-            cutter.whole(body);
-            continue;
-        }
         // Where the camera is in a body, its inner side is what there is.
         let is_within = !is_seen_from_outside(scene, body);
+        if fine == 0 && !matches!(body.shape, Shape::Plane(_)) {
+            cutter.whole(body, body.shape.is_convex() && !is_within);
+            continue;
+        }
         match &body.shape {
             Shape::Sphere(ball) => cutter.ball(ball, fine, is_within),
             Shape::Box(cuboid) => cutter.cuboid(cuboid, fine, is_within),
             Shape::Plane(plane) => match (plane.rectangle, middle) {
                 (Some(ends), _) => cutter.rectangle(plane, &ends, 2 * fine.max(1)),
-                (None, Some(middle)) => cutter.plane(plane, middle, EDGES[fine]),
+                (None, Some(middle)) => cutter.plane(plane, middle, EDGES[fine.min(EDGES.len() - 1)]),
                 (None, None) => cutter.beyond(plane, plane.point, 0.0),
             },
             Shape::Mesh(mesh) => cutter.mesh(mesh, 16 * fine, is_within),
@@ -96,34 +122,23 @@ struct Cutter<'a> {
 
 impl Cutter<'_> {
     fn add(&mut self, centre: Vector, extent: Extent, normals: Cone, area: f64, is_convex: bool) {
-        self.all.push(Patch { body: self.body, centre, extent, normals, area, is_convex });
+        self.all.push(Patch { body: self.body, centre, extent, normals, area, is_convex, form: Form::Whole });
     }
 
     /// In one piece.
-    fn whole(&mut self, body: &Body) {
+    fn whole(&mut self, body: &Body, is_convex: bool) {
         let (centre, radius) = body.shape.around().unwrap_or(([0.0; 3], f64::INFINITY));
-        self.add(centre, Extent::Within(radius), Cone::ALL, f64::INFINITY, false);
+        self.add(centre, Extent::Within(radius), Cone::ALL, f64::INFINITY, is_convex);
     }
 
     /// A sphere by the six sides of a cube about it, each in fields of equal angles.
     fn ball(&mut self, ball: &Ball, fine: usize, is_within: bool) {
-        for (axis, [a, b]) in sides() {
-            let at = |i: usize, j: usize| {
-                let tangent = |k: usize| (FRAC_PI_4 * (2.0 * k as f64 / fine as f64 - 1.0)).tan();
-                unit(along(along(axis, a, tangent(i)), b, tangent(j))).unwrap_or(axis)
-            };
+        for (side, axes) in sides() {
+            let at = |k: usize| FRAC_PI_4 * (2.0 * k as f64 / fine as f64 - 1.0);
             for (i, j) in (0..fine).flat_map(|i| (0..fine).map(move |j| (i, j))) {
-                let corners = [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
-                let sum = corners.iter().fold([0.0; 3], |sum, corner| plus(sum, *corner));
-                let towards = unit(sum).unwrap_or(axis);
-                // A cap that holds the corners holds all between them.
-                let half = corners.iter().map(|corner| angle(towards, *corner)).fold(0.0, f64::max);
-                let solid = triangle(corners[0], corners[1], corners[2]) + triangle(corners[0], corners[2], corners[3]);
-                let centre = along(ball.centre, towards, ball.radius * half.cos());
-                let normals = Cone { axis: towards, half };
-                let normals = if is_within { normals.reversed() } else { normals };
-                let extent = Extent::Within(ball.radius * half.sin());
-                self.add(centre, extent, normals, solid * ball.radius * ball.radius, !is_within);
+                let (low, high) = ([at(i), at(j)], [at(i + 1), at(j + 1)]);
+                let field = Field { ball: *ball, side, axes, low, high, is_within };
+                self.all.push(Patch::round(self.body, field));
             }
         }
     }
@@ -152,8 +167,8 @@ impl Cutter<'_> {
         for (i, j) in (0..fine).flat_map(|i| (0..fine).map(move |j| (i, j))) {
             let middle = |axis: usize, k: usize| half[axis] * (2 * k + 1) as f64 - ends.half[axis];
             let centre = along(along(point, ends.axes[0], middle(0, i)), ends.axes[1], middle(1, j));
-            let extent = Extent::Within(half[0].hypot(half[1]));
-            self.add(centre, extent, Cone::of(normal), 4.0 * half[0] * half[1], is_convex);
+            let ends = Rectangle { axes: ends.axes, half };
+            self.all.push(Patch::flat(self.body, centre, normal, ends, is_convex));
         }
     }
 
@@ -170,7 +185,8 @@ impl Cutter<'_> {
             for (x, wide) in &fields {
                 for (y, high) in &fields {
                     let centre = along(along(foot, axes[0], *x), axes[1], *y);
-                    self.add(centre, Extent::Within(wide.hypot(*high)), Cone::of(normal), 4.0 * wide * high, true);
+                    let ends = Rectangle { axes, half: [*wide, *high] };
+                    self.all.push(Patch::flat(self.body, centre, normal, ends, true));
                 }
             }
         }
@@ -187,7 +203,8 @@ impl Cutter<'_> {
     fn mesh(&mut self, mesh: &Mesh, pieces: usize, is_within: bool) {
         let is_convex = mesh.is_convex() && !is_within;
         for piece in mesh.pieces(pieces) {
-            let half = piece.normals.iter().map(|normal| angle(piece.normal, *normal)).fold(0.0, f64::max);
+            // The middle of a piece need not lie in its plane: it is never taken for flat.
+            let half = piece.normals.iter().map(|normal| angle(piece.normal, *normal)).fold(NOT_FLAT, f64::max);
             let normals = Cone { axis: piece.normal, half };
             let extent = Extent::Within(piece.radius);
             self.add(piece.centre, extent, normals, piece.area, is_convex);
@@ -195,6 +212,108 @@ impl Cutter<'_> {
                 self.add(piece.centre, extent, normals.reversed(), piece.area, is_convex);
             }
         }
+    }
+}
+
+/// Planes without end, with the numbers of their bodies: nothing goes from one side to the other.
+pub(super) fn planes(scene: &Scene) -> impl Iterator<Item = (usize, &Plane)> {
+    scene.bodies.iter().enumerate().filter_map(|(number, body)| match &body.shape {
+        Shape::Plane(plane) if plane.rectangle.is_none() => Some((number, plane)),
+        _ => None,
+    })
+}
+
+/// True where a body hides a light from every place of a ball; false also where that is not known.
+fn hides(shape: &Shape, centre: Vector, radius: f64, source: &Source) -> bool {
+    match shape {
+        Shape::Sphere(ball) => ball_hides(ball.centre, ball.radius, centre, radius, source),
+        Shape::Box(cuboid) => {
+            let within = cuboid.half.iter().copied().fold(f64::INFINITY, f64::min);
+            ball_hides(cuboid.centre, within, centre, radius, source)
+                || (0..3).any(|k| {
+                    let (a, b) = ((k + 1) % 3, (k + 2) % 3);
+                    let half = [cuboid.half[a], cuboid.half[b]];
+                    let ends = Rectangle { axes: [cuboid.axes[a], cuboid.axes[b]], half };
+                    rectangle_hides(cuboid.centre, cuboid.axes[k], &ends, centre, radius, source)
+                })
+        }
+        Shape::Plane(Plane { point, normal, rectangle: Some(ends) }) => {
+            rectangle_hides(*point, *normal, ends, centre, radius, source)
+        }
+        _ => false,
+    }
+}
+
+/// The same of a ball.
+fn ball_hides(at: Vector, wide: f64, centre: Vector, radius: f64, source: &Source) -> bool {
+    let way = minus(at, centre);
+    if length(way) <= wide + radius {
+        return false;
+    }
+    match source.place {
+        Place::Directional(towards) => {
+            let ahead = dot(way, towards);
+            ahead > 0.0 && length(along(way, towards, -ahead)) + radius < wide
+        }
+        Place::Point(place, _) => {
+            let (to, from) = (minus(centre, place), minus(at, place));
+            let (far, near) = (length(to), length(from));
+            // The light outside the ball, and the ball wholly beyond it within the cone of the shadow.
+            near > wide
+                && far > near + radius
+                && far > radius
+                && angle(scaled(to, 1.0 / far), scaled(from, 1.0 / near)) + (radius / far).asin() < (wide / near).asin()
+        }
+        Place::Surround => false,
+    }
+}
+
+/// The same of a rectangle.
+fn rectangle_hides(
+    point: Vector,
+    normal: Vector,
+    ends: &Rectangle,
+    centre: Vector,
+    radius: f64,
+    source: &Source,
+) -> bool {
+    let height = dot(minus(centre, point), normal);
+    if height.abs() <= radius {
+        return false;
+    }
+    match source.place {
+        Place::Directional(towards) => {
+            let slope = dot(towards, normal);
+            if slope * height >= 0.0 {
+                return false;
+            }
+            // Where the lines from the ball towards the light go through the plane.
+            let place = minus(along(centre, towards, -height / slope), point);
+            (0..2).all(|k| {
+                let wide = radius * 1.0_f64.hypot(dot(towards, ends.axes[k]) / slope);
+                dot(place, ends.axes[k]).abs() + wide < ends.half[k]
+            })
+        }
+        Place::Point(place, _) => {
+            let above = dot(minus(place, point), normal);
+            if above * height >= 0.0 {
+                return false;
+            }
+            // The shadow of each edge is a plane through the light.
+            let from = minus(centre, place);
+            (0..2).all(|k| {
+                [1.0, -1.0].into_iter().all(|sign| {
+                    let edge = along(point, ends.axes[k], sign * ends.half[k]);
+                    let outward = unit(cross(minus(edge, place), ends.axes[1 - k]));
+                    outward.is_some_and(|outward| {
+                        let inside = dot(minus(point, place), outward);
+                        let outward = if inside > 0.0 { scaled(outward, -1.0) } else { outward };
+                        dot(from, outward) + radius < 0.0
+                    })
+                })
+            })
+        }
+        Place::Surround => false,
     }
 }
 
@@ -215,6 +334,68 @@ fn triangle(a: Vector, b: Vector, c: Vector) -> f64 {
 }
 
 impl Patch {
+    fn flat(body: usize, centre: Vector, normal: Vector, ends: Rectangle, is_convex: bool) -> Self {
+        Self {
+            body,
+            centre,
+            extent: Extent::Within(ends.half[0].hypot(ends.half[1])),
+            normals: Cone::of(normal),
+            area: 4.0 * ends.half[0] * ends.half[1],
+            is_convex,
+            form: Form::Flat(ends),
+        }
+    }
+
+    fn round(body: usize, field: Field) -> Self {
+        let Field { ball, side, axes: [a, b], low, high, is_within } = field;
+        let at = |u: f64, v: f64| unit(along(along(side, a, u.tan()), b, v.tan())).unwrap_or(side);
+        let corners = [at(low[0], low[1]), at(high[0], low[1]), at(high[0], high[1]), at(low[0], high[1])];
+        let sum = corners.iter().fold([0.0; 3], |sum, corner| plus(sum, *corner));
+        let towards = unit(sum).unwrap_or(side);
+        // A cap that holds the corners holds all between them.
+        let half = corners.iter().map(|corner| angle(towards, *corner)).fold(0.0, f64::max);
+        let solid = triangle(corners[0], corners[1], corners[2]) + triangle(corners[0], corners[2], corners[3]);
+        let normals = Cone { axis: towards, half };
+        Self {
+            body,
+            centre: along(ball.centre, towards, ball.radius * half.cos()),
+            extent: Extent::Within(ball.radius * half.sin()),
+            normals: if is_within { normals.reversed() } else { normals },
+            area: solid * ball.radius * ball.radius,
+            is_convex: !is_within,
+            form: Form::Round(field),
+        }
+    }
+
+    /// The same in four parts; nothing where it cannot be cut.
+    pub(super) fn quarters(&self) -> Vec<Self> {
+        let quarters = [(0, 0), (0, 1), (1, 0), (1, 1)].into_iter();
+        match self.form {
+            Form::Whole => Vec::new(),
+            Form::Flat(ends) => {
+                let half = ends.half.map(|half| half / 2.0);
+                let beside = |k: usize, which: u8| if which == 0 { -half[k] } else { half[k] };
+                let part = |(i, j): (u8, u8)| {
+                    let centre = along(along(self.centre, ends.axes[0], beside(0, i)), ends.axes[1], beside(1, j));
+                    Self::flat(self.body, centre, self.normals.axis, Rectangle { half, ..ends }, self.is_convex)
+                };
+                quarters.map(part).collect()
+            }
+            Form::Round(field) => {
+                let middle = [0, 1].map(|k| f64::midpoint(field.low[k], field.high[k]));
+                let ends = |k: usize, which: u8| match which {
+                    0 => (field.low[k], middle[k]),
+                    _ => (middle[k], field.high[k]),
+                };
+                let part = |(i, j): (u8, u8)| {
+                    let ((a, b), (c, d)) = (ends(0, i), ends(1, j));
+                    Self::round(self.body, Field { low: [a, c], high: [b, d], ..field })
+                };
+                quarters.map(part).collect()
+            }
+        }
+    }
+
     /// How far it goes beyond its centre in a direction.
     pub(super) fn reach(&self, direction: Vector) -> f64 {
         let Extent::Within(radius) = self.extent else { return f64::INFINITY };
@@ -273,6 +454,38 @@ impl Patch {
         may_shade_itself(scene, self.body, source) || scene.bodies.iter().enumerate().any(other)
     }
 
+    /// On which side of a plane without end all of it is: 1 or -1, and 0 where it may be on both.
+    pub(super) fn side(&self, number: usize, plane: &Plane) -> i8 {
+        if self.body == number {
+            return if dot(self.normals.axis, plane.normal) > 0.0 { 1 } else { -1 };
+        }
+        let height = dot(minus(self.centre, plane.point), plane.normal);
+        match self.reach(plane.normal) * (1.0 + 1e-9) {
+            reach if height > reach => 1,
+            reach if height < -reach => -1,
+            _ => 0,
+        }
+    }
+
+    /// True where a body provably stands between all of it and a light.
+    pub(super) fn is_dark(&self, scene: &Scene, source: &Source) -> bool {
+        let Extent::Within(radius) = self.extent else { return self.is_behind_plane(scene, source) };
+        let other = |(_, body): &(usize, &Body)| hides(&body.shape, self.centre, radius * (1.0 + 1e-9), source);
+        self.is_behind_plane(scene, source)
+            || scene.bodies.iter().enumerate().filter(|(number, _)| *number != self.body).any(|one| other(&one))
+    }
+
+    fn is_behind_plane(&self, scene: &Scene, source: &Source) -> bool {
+        planes(scene).any(|(number, plane)| {
+            let light = match source.place {
+                Place::Directional(towards) => dot(towards, plane.normal),
+                Place::Point(place, _) => dot(minus(place, plane.point), plane.normal),
+                Place::Surround => 0.0,
+            };
+            f64::from(self.side(number, plane)) * light < 0.0
+        })
+    }
+
     /// How high a place is above the plane of a flat patch, and how far from its centre along the plane.
     pub(super) fn above_plane(&self, place: Vector) -> (f64, f64) {
         let from = minus(place, self.centre);
@@ -285,6 +498,16 @@ impl Patch {
         let camera = &scene.camera;
         let [right, up, forward] = camera.axes;
         let tall = scene.size.1 as f64 / scene.size.0 as f64;
+        let is_behind = |(number, plane): (usize, &Plane)| {
+            let corners = [(-1.0, -tall), (1.0, -tall), (1.0, tall), (-1.0, tall)].into_iter();
+            let side = f64::from(self.side(number, plane));
+            corners
+                .map(|(x, y)| side * dot(minus(scene.camera.ray(x, y).0, plane.point), plane.normal))
+                .all(|height| height < 0.0)
+        };
+        if planes(scene).any(is_behind) {
+            return false;
+        }
         let Extent::Within(radius) = self.extent else { return self.plane_may_be_seen(scene) };
         let from = minus(self.centre, camera.place);
         match camera.projection {

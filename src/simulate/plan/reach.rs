@@ -81,7 +81,7 @@ impl Reach {
         }
     }
 
-    /// True where light may go from one body to another, or from one part of a body to another.
+    /// True where no light goes from one body to another, or from one part of a body to another.
     pub(super) fn is_open(&self) -> bool {
         self.seen.iter().flatten().all(|share| *share == 0.0)
     }
