@@ -318,7 +318,8 @@ fn interreflection_is_bounded_to_any_number_of_bounces() {
 fn what_is_left_out_while_light_goes_round_is_bounded() {
     let mut random = Random::new(15);
     let mut ratios: Vec<(&str, f64)> = Vec::new();
-    for case in 0..count(40) {
+    // Scene 67 has all of its brightest place in a shadow that one of the plans does not draw.
+    for case in 0..count(70) {
         let mut scene = random_scene(&mut random);
         scene.materials.iter_mut().for_each(|one| one.specular = None);
         scene.bounces = if case % 2 == 0 { Bounces::All } else { Bounces::Most(1 + case as u32 % 4) };
