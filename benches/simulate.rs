@@ -147,8 +147,8 @@ fn pictures(repeats: usize, pools: &[rayon::ThreadPool; 2]) {
     };
     let report = |name: &str, (median, least): (f64, f64)| println!("  {name:<46}{median:9.2} ({least:7.2})");
     println!("pictures on 2 threads: a sphere alone, {SIDE} x {SIDE}");
-    let planned = plan(&sphere, 0.0).unwrap().choice;
-    report("plan", time(repeats, || drop(black_box(plan(&sphere, 0.0).unwrap()))));
+    let planned = plan(&sphere, Kept::Colour, 0.0).unwrap().choice;
+    report("plan", time(repeats, || drop(black_box(plan(&sphere, Kept::Colour, 0.0).unwrap()))));
     report("as planned, on fresh memory", time(repeats, || pools[1].install(|| draw(&sphere, &planned))));
     let full = scenes::everything(&sphere);
     report(
@@ -170,23 +170,26 @@ fn pictures(repeats: usize, pools: &[rayon::ThreadPool; 2]) {
     room.sources.push(scenes::lamp("sky", Place::Surround, [0.2, 0.3, 0.4]));
     room.bounces = Bounces::Most(4);
     (room.size, room.samples) = ((320, 240), 8);
-    let choice = plan(&room, 0.0).unwrap().choice;
+    let choice = plan(&room, Kept::Colour, 0.0).unwrap().choice;
     assert!(Effect::ALL.iter().all(|effect| choice.has(*effect)), "something is skipped");
     println!("nothing to skip, 320 x 240, 8 samples");
     let (mut alone, mut with_plan) = (Vec::new(), Vec::new());
     for _ in 0..repeats.div_ceil(2) {
         alone.push(time(1, || pools[1].install(|| draw(&room, &choice))).0);
-        with_plan.push(time(1, || pools[1].install(|| draw(&room, &plan(&room, 0.0).unwrap().choice))).0);
+        with_plan.push(time(1, || pools[1].install(|| draw(&room, &plan(&room, Kept::Colour, 0.0).unwrap().choice))).0);
     }
     for (name, mut times) in [("everything", alone), ("plan, and what it says", with_plan)] {
         times.sort_by(f64::total_cmp);
         report(name, (times[times.len() / 2], times[0]));
     }
-    report("plan alone", time(repeats, || drop(black_box(plan(&room, 0.0).unwrap()))));
+    report("plan alone", time(repeats, || drop(black_box(plan(&room, Kept::Colour, 0.0).unwrap()))));
     room.materials[0].specular = None;
     report("the same without interfaces", time(repeats.div_ceil(2), || pools[1].install(|| draw(&room, &choice))));
-    report("its plan", time(repeats, || drop(black_box(plan(&room, 0.0).unwrap()))));
-    report("plan alone, 1 CIELAB", time(repeats.div_ceil(8), || drop(black_box(plan(&room, 1.0).unwrap()))));
+    report("its plan", time(repeats, || drop(black_box(plan(&room, Kept::Colour, 0.0).unwrap()))));
+    report(
+        "plan alone, 1 CIELAB",
+        time(repeats.div_ceil(8), || drop(black_box(plan(&room, Kept::Colour, 1.0).unwrap()))),
+    );
 }
 
 const NUMPY: &str = "

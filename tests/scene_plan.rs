@@ -132,7 +132,7 @@ fn with_no_tolerance_the_picture_is_that_of_the_full_simulation() {
         let Ok(full) = Picture::draw(&scene, &everything, Kept::Colour, Layer::ALL, &Watch::default()) else {
             continue;
         };
-        let plan = plan(&scene, 0.0).unwrap();
+        let plan = plan(&scene, Kept::Colour, 0.0).unwrap();
         assert!(plan.bound.is_zero(), "case {case}: {}", plan.text());
         let planned = draw(&scene, &plan.choice);
         drawn += 1;
@@ -189,7 +189,7 @@ fn no_pixel_changes_by_more_than_the_bound_and_the_bound_is_not_idle() {
         scene
             .sources
             .retain(|source| !source.is_surround() || (scene.bodies.len() == 1 && scene.bodies[0].shape.is_convex()));
-        let planned = plan(&scene, 0.0).unwrap();
+        let planned = plan(&scene, Kept::Colour, 0.0).unwrap();
         let full = draw(&scene, &planned.choice);
         for decision in &planned.effects {
             let left = draw(&scene, &planned.choice.without(decision.effect));
@@ -413,10 +413,10 @@ fn with_a_tolerance_the_plan_keeps_it_and_does_less() {
         let mut scene = random_scene(&mut random);
         scene.sources.retain(|source| !source.is_surround());
         scene.bounces = Bounces::Most(0);
-        let exact = plan(&scene, 0.0).unwrap();
+        let exact = plan(&scene, Kept::Colour, 0.0).unwrap();
         let full = draw(&scene, &exact.choice);
         for tolerance in [0.5, 5.0] {
-            let rough = plan(&scene, tolerance).unwrap();
+            let rough = plan(&scene, Kept::Colour, tolerance).unwrap();
             assert!(rough.bound.delta_e <= tolerance, "case {case}: {}", rough.text());
             let (delta_e, luminance) = apart(&full, &draw(&scene, &rough.choice));
             assert!(delta_e <= rough.bound.delta_e + 1e-4, "case {case}: {delta_e}: {}", rough.text());
@@ -428,11 +428,22 @@ fn with_a_tolerance_the_plan_keeps_it_and_does_less() {
     assert!(fewer > cases / 4, "{fewer} of {cases} plans do less");
 }
 
+/// Whoever keeps spectra gets the wavelengths that the scene names, whatever a colour would allow.
+#[test]
+fn a_plan_of_spectra_keeps_their_wavelengths_and_says_what_it_makes() {
+    let sun = Place::Directional(unit([0.2, -1.0, 0.5]));
+    let scene = scene(vec![ball([0.0; 3], 1.0, 0)], vec![glowing("one", 0.3, 560.0, 0.3)], vec![white("sun", sun)]);
+    let [colours, spectra] = [Kept::Colour, Kept::Spectra].map(|kept| plan(&scene, kept, 20.0).unwrap());
+    assert!(colours.step_nm > STEP && spectra.step_nm == STEP, "{} {}", colours.step_nm, spectra.step_nm);
+    assert!(colours.text().contains("three numbers per term") && colours.text().contains("many pixels at once"));
+    assert!(spectra.text().contains("one number per term and wavelength") && !spectra.text().contains("many pixels"));
+}
+
 #[test]
 fn every_skip_has_its_reason() {
     let sun = Place::Directional(unit([0.2, -1.0, 0.5]));
     let text = |scene: &Scene, effect: Effect| {
-        let plan = plan(scene, 0.0).unwrap();
+        let plan = plan(scene, Kept::Colour, 0.0).unwrap();
         let one = plan.effects.iter().find(|one| one.effect == effect).unwrap().clone();
         if one.simulate { "simulated".to_owned() } else { one.reason }
     };
@@ -452,7 +463,7 @@ fn every_skip_has_its_reason() {
         None,
     )
     .unwrap();
-    assert!(text(&red, Effect::Luminescence).contains("excited"), "{}", plan(&red, 0.0).unwrap().text());
+    assert!(text(&red, Effect::Luminescence).contains("excited"), "{}", plan(&red, Kept::Colour, 0.0).unwrap().text());
     let mut apart = single.clone();
     apart.bodies.push(ball([3.0, 0.0, 0.0], 1.0, 0));
     apart.sources[0].place = Place::Directional([0.0, 0.0, 1.0]);
@@ -464,7 +475,11 @@ fn every_skip_has_its_reason() {
         normal: [0.0, 0.0, 1.0],
         rectangle: Some(Rectangle { axes: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], half: [1.0, 1.0] }),
     });
-    assert!(text(&glossy, Effect::Specular).contains("nowhere in view"), "{}", plan(&glossy, 0.0).unwrap().text());
+    assert!(
+        text(&glossy, Effect::Specular).contains("nowhere in view"),
+        "{}",
+        plan(&glossy, Kept::Colour, 0.0).unwrap().text()
+    );
 }
 
 /// All triangles of a bowl lie on one side of each other's planes, and yet its inside sees itself.
@@ -480,7 +495,7 @@ fn an_open_bowl_of_triangles_sees_itself_and_a_closed_one_does_not() {
         let mut scene = scene(vec![bowl], vec![grey(0.8)], vec![white("sun", above)]);
         scene.camera =
             Camera::new([0.0, -1.0, 8.0], [0.0; 3], [0.0, 0.0, 1.0], Projection::Orthographic { width: 3.0 }).unwrap();
-        let plan = plan(&scene, 0.0).unwrap();
+        let plan = plan(&scene, Kept::Colour, 0.0).unwrap();
         let picture = draw(&scene, &everything(&scene));
         let most = picture.layer(Layer::Interreflection).unwrap()[1].iter().copied().fold(0.0, f32::max);
         (plan.choice.has(Effect::Interreflection), most)

@@ -37,7 +37,7 @@ pub fn image_ladder(scene: &Scene, subject: String, patience: Patience) -> Resul
     let full = drawn(scene, &everything)?;
     let is_random = !full.noise.is_empty();
     let reference = match is_random {
-        true => drawn(&surer(scene), &plan(scene, 0.0)?.choice)?,
+        true => drawn(&surer(scene), &plan(scene, Kept::Colour, 0.0)?.choice)?,
         false => full.clone(),
     };
     let mut candidates = Vec::new();
@@ -61,7 +61,7 @@ pub fn image_ladder(scene: &Scene, subject: String, patience: Patience) -> Resul
             note: Some(note).filter(|note| !note.is_empty()),
             work: Box::new(move || {
                 // Who renders so pays for the plan, too.
-                let is_planned = planned.is_none_or(|tolerance| plan(&scene, tolerance).is_ok());
+                let is_planned = planned.is_none_or(|tolerance| plan(&scene, Kept::Colour, tolerance).is_ok());
                 std::hint::black_box(is_planned && drawn(&scene, &choice).is_ok());
             }),
             times: 1.0,
@@ -102,7 +102,7 @@ fn surer(scene: &Scene) -> Scene {
 
 /// In full, by plans, and with less of one thing at a time beside the plan that leaves out nothing.
 fn settings(scene: &Scene, everything: Choice, is_random: bool) -> Result<Vec<Setting>, NoPicture> {
-    let exact = plan(scene, 0.0)?.choice;
+    let exact = plan(scene, Kept::Colour, 0.0)?.choice;
     let of = |name: String, knob, options: &[&str], scene: Scene, choice| {
         let options = options.iter().map(|word| (*word).to_owned()).collect();
         Setting { name, knob, options, scene, choice, planned: Some(0.0), note: None }
@@ -112,7 +112,7 @@ fn settings(scene: &Scene, everything: Choice, is_random: bool) -> Result<Vec<Se
         of("plan, product by pixel".to_owned(), IN_FULL, &["--by-pixel"], scene.clone(), exact.by_pixel()),
     ];
     for tolerance in TOLERANCES {
-        let found = plan(scene, tolerance)?;
+        let found = plan(scene, Kept::Colour, tolerance)?;
         // The same plan is the same rung.
         if settings.last().is_some_and(|last| last.knob == PLANNED && last.choice == found.choice) {
             continue;
@@ -127,7 +127,7 @@ fn settings(scene: &Scene, everything: Choice, is_random: bool) -> Result<Vec<Se
         let step = scene.grid.step() * times;
         let Ok(grid) = scene.grid.in_steps_of(step) else { continue };
         let coarser = Scene { grid, ..scene.clone() };
-        let choice = plan(&coarser, 0.0)?.choice;
+        let choice = plan(&coarser, Kept::Colour, 0.0)?.choice;
         settings.push(of(
             format!("{step} nm"),
             "step of the wavelength",
@@ -142,7 +142,7 @@ fn settings(scene: &Scene, everything: Choice, is_random: bool) -> Result<Vec<Se
     };
     for most in BOUNCES.into_iter().filter(|most| exact.has(Effect::Interreflection) && is_fewer(most)) {
         let fewer = Scene { bounces: Bounces::Most(most), ..scene.clone() };
-        let choice = plan(&fewer, 0.0)?.choice;
+        let choice = plan(&fewer, Kept::Colour, 0.0)?.choice;
         let name = if most == 1 { "1 bounce".to_owned() } else { format!("{most} bounces") };
         settings.push(of(name, "bounces", &["--bounces", &most.to_string()], fewer, choice));
     }

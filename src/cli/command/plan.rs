@@ -48,7 +48,8 @@ impl Tolerance {
         if !(self.max_delta_e >= 0.0 && self.max_delta_e.is_finite()) {
             return Err(miette!("--max-delta-e {}: expected a number of 0 or more", self.max_delta_e));
         }
-        watched("planning", || plan(&resolved.scene, self.max_delta_e)).map_err(|why| no_picture(place, resolved, &why))
+        watched("planning", || plan(&resolved.scene, resolved.kept, self.max_delta_e))
+            .map_err(|why| no_picture(place, resolved, &why))
     }
 }
 

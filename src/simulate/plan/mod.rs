@@ -26,7 +26,7 @@ use super::choice::Choice;
 use super::effect::Effect;
 use super::grid::NoGrid;
 use super::material::Material;
-use super::picture::{NoPicture, may_bounce};
+use super::picture::{Kept, NoPicture, may_bounce};
 use super::scene::{Bounces, Scene};
 
 /// Steps of the wavelength that are tried, as multiples of the scene's.
@@ -69,12 +69,12 @@ pub struct Plan {
     pub choice: Choice,
 }
 
-/// Makes the plan of a scene: with a tolerance of 0 only what is provably nothing is left out; otherwise the cheapest plan whose bound
+/// Makes the plan of a picture of a scene that keeps colours or spectra: with a tolerance of 0 only what is provably nothing is left out; otherwise the cheapest plan whose bound
 /// in CIELAB distance (1976) is not above it.
 ///
 /// # Errors
 /// [`NoPicture`] for a scene that cannot be drawn.
-pub fn plan(scene: &Scene, max_delta_e: f64) -> Result<Plan, NoPicture> {
+pub fn plan(scene: &Scene, kept: Kept, max_delta_e: f64) -> Result<Plan, NoPicture> {
     scene.check()?;
     let everything = Choice::everything(scene.bounces, scene.grid.step());
     // Without a tolerance bounds decide nothing: they may be wide, and must not take longer than a small part of the picture.
@@ -84,7 +84,7 @@ pub fn plan(scene: &Scene, max_delta_e: f64) -> Result<Plan, NoPicture> {
     let nothing: Vec<Effect> = Effect::ALL.iter().copied().filter(|effect| full.is_nothing(*effect)).collect();
     let base = Choice { by_pixel: false, ..nothing.iter().fold(everything, |choice, effect| choice.without(*effect)) };
     let alone: Vec<Bound> = Effect::ALL.iter().map(|effect| full.bound(&everything.without(*effect))).collect();
-    let choice = if max_delta_e > 0.0 { cheapest(scene, &full, base, &alone, max_delta_e)? } else { base };
+    let choice = if max_delta_e > 0.0 { cheapest((scene, kept), &full, base, &alone, max_delta_e)? } else { base };
     let choice = if choice.bounces == Bounces::Most(0) { choice.without(Effect::Interreflection) } else { choice };
     may_bounce(scene, &choice, &full.whole.prepared)?;
     let mut bound = full.bound(&choice);
@@ -100,7 +100,7 @@ pub fn plan(scene: &Scene, max_delta_e: f64) -> Result<Plan, NoPicture> {
     Ok(Plan {
         max_delta_e,
         effects: Effect::ALL.iter().zip(&alone).map(decision).collect(),
-        route: route(scene, &full, &choice),
+        route: route((scene, kept), &full, &choice),
         step_nm: choice.step_nm,
         full_step_nm: scene.grid.step(),
         bounces: if choice.has(Effect::Interreflection) { choice.bounces } else { Bounces::Most(0) },
@@ -110,7 +110,13 @@ pub fn plan(scene: &Scene, max_delta_e: f64) -> Result<Plan, NoPicture> {
 }
 
 /// Plans in the order of their cost; the first that keeps the bound.
-fn cheapest(scene: &Scene, full: &Full<'_>, base: Choice, alone: &[Bound], tolerance: f64) -> Result<Choice, NoGrid> {
+fn cheapest(
+    (scene, kept): (&Scene, Kept),
+    full: &Full<'_>,
+    base: Choice,
+    alone: &[Bound],
+    tolerance: f64,
+) -> Result<Choice, NoGrid> {
     let may_go: Vec<Effect> = Effect::ALL
         .iter()
         .zip(alone)
@@ -135,7 +141,9 @@ fn cheapest(scene: &Scene, full: &Full<'_>, base: Choice, alone: &[Bound], toler
         for bounces in &bounces {
             for times in STEPS {
                 let step_nm = scene.grid.step() * times;
-                if scene.grid.in_steps_of(step_nm).is_ok() {
+                // Whoever keeps spectra asks for these wavelengths, and not for others that look the same.
+                let may_step = times == 1.0 || kept == Kept::Colour;
+                if may_step && scene.grid.in_steps_of(step_nm).is_ok() {
                     let choice = Choice { bounces: *bounces, step_nm, ..left };
                     plans.push((cost(scene, &choice), choice));
                 }
@@ -212,14 +220,18 @@ fn used(scene: &Scene) -> impl Iterator<Item = &Material> {
     scene.bodies.iter().map(|body| &scene.materials[body.material])
 }
 
-fn route(scene: &Scene, full: &Full<'_>, choice: &Choice) -> Vec<String> {
+fn route((scene, kept): (&Scene, Kept), full: &Full<'_>, choice: &Choice) -> Vec<String> {
     let mut list = Vec::new();
     let (materials, lights) = (scene.materials.len(), scene.sources.len());
+    let numbers = match kept {
+        Kept::Colour => "three numbers per term make each colour exactly",
+        Kept::Spectra => "one number per term and wavelength makes each spectrum exactly",
+    };
     list.push(format!(
         "the product of matrix and light is made once for each material and light ({materials} x {lights}), and not at every pixel: \
-         three numbers per term make each colour exactly"
+         {numbers}"
     ));
-    if is_alone(scene, choice) {
+    if kept == Kept::Colour && is_alone(scene, choice) {
         list.push(
             "one sphere under one light, seen along parallel lines: colours of many pixels at once, in closed form"
                 .to_owned(),
