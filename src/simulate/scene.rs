@@ -5,7 +5,7 @@ use super::grid::Grid;
 use super::material::{Material, NoMaterial};
 use super::shape::{Meeting, Ray, Shape, Start};
 use super::source::Source;
-use super::vector::{Vector, along, dot, scaled};
+use super::vector::{Vector, dot, scaled};
 use crate::donaldson::Observer;
 
 /// Most bodies, materials or lights.
@@ -113,10 +113,9 @@ impl Scene {
             }
         }
         let (meeting, body) = nearest?;
-        let place = along(ray.from, ray.towards, meeting.distance);
         let is_outside = dot(meeting.outward, ray.towards) <= 0.0;
         Some(Spot {
-            place,
+            place: meeting.place,
             normal: if is_outside { meeting.outward } else { scaled(meeting.outward, -1.0) },
             start: Start { body, part: meeting.part, outward: meeting.outward },
             material: self.bodies[body].material,

@@ -43,6 +43,8 @@ pub(super) struct Start {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Meeting {
     pub(super) distance: f64,
+    /// Where: it may have digits that the distance from afar has not.
+    pub(super) place: Vector,
     /// Normal out of the body.
     pub(super) outward: Vector,
     pub(super) part: usize,

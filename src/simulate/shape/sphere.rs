@@ -44,6 +44,6 @@ impl Ball {
         let place = along(ray.from, ray.towards, distance);
         let outward = scaled(minus(place, self.centre), 1.0 / self.radius);
         let length = dot(outward, outward).sqrt();
-        Some(Meeting { distance, outward: scaled(outward, 1.0 / length), part: 0 })
+        Some(Meeting { distance, place, outward: scaled(outward, 1.0 / length), part: 0 })
     }
 }

@@ -1,0 +1,113 @@
+//! Rays: none is lost between two triangles, none leaves a closed room, and none writes what is no number.
+#![allow(clippy::unwrap_used, missing_docs)]
+
+#[path = "common/scans.rs"]
+mod scans;
+#[path = "common/scenes.rs"]
+mod scenes;
+
+use bbrf::simulate::{Body, Bounces, Camera, Mesh, Place, Projection, Shape};
+use scans::Random;
+use scenes::*;
+
+type Vector = [f64; 3];
+
+fn mesh(corners: &[Vector], triangles: &[[usize; 3]]) -> Body {
+    Body { name: "mesh".to_owned(), shape: Shape::Mesh(Mesh::new(corners, triangles).unwrap()), material: 0 }
+}
+
+/// Three directions across each other, turned at random.
+fn turned(random: &mut Random) -> [Vector; 3] {
+    let [w, x, y, z] = [0; 4].map(|_| random.normal());
+    let n = (w * w + x * x + y * y + z * z).sqrt();
+    let [w, x, y, z] = [w / n, x / n, y / n, z / n];
+    [
+        [1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y + z * w), 2.0 * (x * z - y * w)],
+        [2.0 * (x * y - z * w), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z + x * w)],
+        [2.0 * (x * z + y * w), 2.0 * (y * z - x * w), 1.0 - 2.0 * (x * x + y * y)],
+    ]
+}
+
+/// Squares of two triangles whose common side lies on the middles of pixels.
+#[test]
+fn no_ray_passes_between_two_triangles() {
+    let mut random = Random::new(3);
+    let mut lost = 0;
+    for _ in 0..25 {
+        let axes = turned(&mut random);
+        let centre = [0; 3].map(|_| random.between(-3.0, 3.0));
+        let at =
+            |x: f64, y: f64, z: f64| [0, 1, 2].map(|k| centre[k] + x * axes[0][k] + y * axes[1][k] + z * axes[2][k]);
+        let corners = [at(-1.0, -1.0, 0.0), at(1.0, -1.0, 0.0), at(1.0, 1.0, 0.0), at(-1.0, 1.0, 0.0)];
+        let sun = white("sun", Place::Directional(axes[2]));
+        let mut scene = scene(vec![mesh(&corners, &[[0, 1, 2], [0, 2, 3]])], vec![grey(0.5)], vec![sun]);
+        let projection = Projection::Orthographic { width: 1.9 };
+        scene.camera = Camera::new(at(0.0, 0.0, 5.0), centre, axes[1], projection).unwrap();
+        scene.size = (200, 200);
+        scene.bounces = Bounces::Most(0);
+        lost += luminance(&draw(&scene, &everything(&scene))).iter().filter(|value| **value == 0.0).count();
+    }
+    assert_eq!(lost, 0, "pixels between two triangles");
+}
+
+/// A fan of long triangles, seen along its hub and along all its sides.
+#[test]
+fn no_ray_passes_by_a_corner_of_many_triangles() {
+    let mut random = Random::new(4);
+    for _ in 0..10 {
+        let axes = turned(&mut random);
+        let at = |x: f64, y: f64, z: f64| [0, 1, 2].map(|k| x * axes[0][k] + y * axes[1][k] + z * axes[2][k]);
+        let count = 7;
+        let rim = (0..count).map(|k| f64::from(k) * std::f64::consts::TAU / f64::from(count)).map(f64::sin_cos);
+        let corners: Vec<Vector> =
+            std::iter::once(at(0.1, 0.2, 0.3)).chain(rim.map(|(y, x)| at(9.0 * x, 9.0 * y, 0.0))).collect();
+        let count = count as usize;
+        let triangles: Vec<[usize; 3]> = (0..count).map(|k| [0, 1 + k, 1 + (k + 1) % count]).collect();
+        let sky = white("sky", Place::Surround);
+        let mut scene = scene(vec![mesh(&corners, &triangles)], vec![grey(0.5)], vec![sky]);
+        // So narrow that all pixels are within rounding of the hub.
+        for width in [1e-15, 1e-12, 1e-3] {
+            let projection = Projection::Orthographic { width };
+            scene.camera = Camera::new(at(0.1, 0.2, 7.0), at(0.1, 0.2, 0.0), axes[1], projection).unwrap();
+            scene.size = (41, 41);
+            scene.bounces = Bounces::Most(0);
+            scene.samples = 1;
+            let picture = draw(&scene, &everything(&scene));
+            let lost = luminance(&picture).iter().filter(|value| **value == 0.0).count();
+            // Some of the sky may be hidden by the fan itself: not from its hub.
+            assert_eq!(lost, 0, "{lost} of {} pixels of width {width}", 41 * 41);
+        }
+    }
+}
+
+fn cube() -> Body {
+    let corners: Vec<Vector> =
+        (0..8_u8).map(|k| [0, 1, 2].map(|axis| if k >> axis & 1 == 1 { 1.0 } else { -1.0 })).collect();
+    let sides = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+    let triangles: Vec<[usize; 3]> = sides.iter().flat_map(|[a, b, c, d]| [[*a, *b, *c], [*a, *c, *d]]).collect();
+    mesh(&corners, &triangles)
+}
+
+/// A closed room of triangles is dark inside, also where a path or a shadow ray begins in the very corner of two walls.
+#[test]
+fn no_light_comes_into_a_closed_room_of_triangles() {
+    let lights = vec![
+        white("sky", Place::Surround),
+        white("sun", Place::Directional([0.6, 0.0, 0.8])),
+        white("lamp", Place::Point([-5.0, 3.0, 0.7], 5.0)),
+        white("lamp", Place::Point([3.0, -4.0, 1.5], 5.0)),
+    ];
+    let mut scene = scene(vec![cube()], vec![grey(0.9)], lights);
+    scene.size = (33, 33);
+    scene.samples = 8;
+    // At an edge, at a corner, at the seam of two triangles of a wall.
+    for at in [[0.5, 0.5, 0.0], [0.5, 0.5, 0.5], [0.5, 0.0, 0.0]] {
+        for up in [[0.0, 0.0, 1.0], [0.0, 1.0, 1.0]] {
+            let projection = Projection::Orthographic { width: 0.5 };
+            scene.camera = Camera::new([0.0; 3], at, up, projection).unwrap();
+            let picture = draw(&scene, &everything(&scene));
+            let lit = luminance(&picture).iter().filter(|value| **value != 0.0).count();
+            assert_eq!(lit, 0, "lit pixels towards {at:?}");
+        }
+    }
+}
