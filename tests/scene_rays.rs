@@ -6,7 +6,7 @@ mod scans;
 #[path = "common/scenes.rs"]
 mod scenes;
 
-use bbrf::simulate::{Body, Bounces, Camera, Mesh, Place, Projection, Shape};
+use bbrf::simulate::{Body, Bounces, Camera, Mesh, Picture, Place, Projection, Shape, plan};
 use scans::Random;
 use scenes::*;
 
@@ -14,6 +14,10 @@ type Vector = [f64; 3];
 
 fn mesh(corners: &[Vector], triangles: &[[usize; 3]]) -> Body {
     Body { name: "mesh".to_owned(), shape: Shape::Mesh(Mesh::new(corners, triangles).unwrap()), material: 0 }
+}
+
+fn numbers(picture: &Picture) -> impl Iterator<Item = f32> {
+    picture.layers.iter().flat_map(|(_, planes)| planes.iter().flatten().copied())
 }
 
 /// Three directions across each other, turned at random.
@@ -109,5 +113,28 @@ fn no_light_comes_into_a_closed_room_of_triangles() {
             let lit = luminance(&picture).iter().filter(|value| **value != 0.0).count();
             assert_eq!(lit, 0, "lit pixels towards {at:?}");
         }
+    }
+}
+
+/// What reflects nothing at its interface has none, for the plan and for the picture.
+#[test]
+fn an_interface_of_no_intensity_is_none() {
+    let mut scene = scene(
+        vec![ball([0.0; 3], 1.0, 0), floor(-1.0, 0)],
+        vec![grey(0.7)],
+        vec![white("sun", Place::Directional([0.6, 0.0, 0.8]))],
+    );
+    scene.bounces = Bounces::Most(3);
+    scene.materials[0].specular = Some(gloss(0.0, 0.1));
+    for intensity in [Vec::new(), vec![(400.0, 0.0), (700.0, 0.0)]] {
+        scene.materials[0].intensity = intensity;
+        let in_full = draw(&scene, &everything(&scene));
+        let planned = plan(&scene, 0.0).unwrap();
+        assert!(planned.bound.is_zero());
+        let drawn = draw(&scene, &planned.choice.by_pixel());
+        assert!(numbers(&drawn).zip(numbers(&in_full)).all(|(a, b)| a.to_bits() == b.to_bits()));
+        let mut without = scene.clone();
+        without.materials[0].specular = None;
+        assert_eq!(in_full, draw(&without, &everything(&without)));
     }
 }

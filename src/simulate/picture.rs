@@ -248,7 +248,7 @@ fn may_bounce(scene: &Scene, choice: &Choice, prepared: &Prepared) -> Result<(),
 /// The largest directional albedo of an interface of intensity 1 up to 80 degrees: with the paper's denominator that beyond has no
 /// bound.
 fn interface_albedo(material: &super::material::Material) -> f64 {
-    let Some(term) = material.specular else { return 0.0 };
+    let Some(term) = material.interface() else { return 0.0 };
     let term = crate::terms::Term::TorranceSparrow(crate::terms::TorranceSparrow { intensity: 1.0, ..term });
     let at = |theta: f64| {
         let direction = crate::quantity::Direction::from_degrees(theta, 0.0).ok()?;

@@ -82,14 +82,14 @@ impl Pixel {
 impl<'a> Tracer<'a> {
     pub(super) fn new(scene: &'a Scene, choice: Choice, grid: &Grid, spectra: &'a Spectra<'a>, eye: Vec<f64>) -> Self {
         let of_material = |material: &super::material::Material| {
-            material.specular.filter(|_| choice.has(Effect::Specular)).as_ref().map(Interface::new)
+            material.interface().filter(|_| choice.has(Effect::Specular)).as_ref().map(Interface::new)
         };
         let interfaces: Vec<Option<Interface>> = scene.materials.iter().map(of_material).collect();
         let is_surrounded =
             choice.has(Effect::Surround) && scene.sources.iter().any(super::source::Source::is_surround);
         let table = |material: &super::material::Material| {
             material
-                .specular
+                .interface()
                 .filter(|_| is_surrounded && choice.has(Effect::Specular))
                 .as_ref()
                 .map(interface::surrounded)
