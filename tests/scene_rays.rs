@@ -6,7 +6,7 @@ mod scans;
 #[path = "common/scenes.rs"]
 mod scenes;
 
-use bbrf::simulate::{Body, Bounces, Camera, Mesh, Picture, Place, Projection, Shape, plan};
+use bbrf::simulate::{Body, Bounces, Camera, Kept, Layer, Mesh, Picture, Place, Projection, Scene, Shape, Watch, plan};
 use scans::Random;
 use scenes::*;
 
@@ -137,4 +137,18 @@ fn an_interface_of_no_intensity_is_none() {
         without.materials[0].specular = None;
         assert_eq!(in_full, draw(&without, &everything(&without)));
     }
+}
+
+/// The rays of parallel projection begin anywhere on the film: some of them in the ball, where light goes round.
+#[test]
+fn what_gives_more_than_it_gets_is_not_looked_at_from_within() {
+    let lamp = white("lamp", Place::Point([0.2, 0.1, 0.0], 1.0));
+    let mut scene = scene(vec![ball([0.0; 3], 1.0, 0)], vec![grey(1.2)], vec![lamp]);
+    let projection = Projection::Orthographic { width: 4.0 };
+    let draw =
+        |scene: &Scene| Picture::draw(scene, &everything(scene), Kept::Colour, &[Layer::Total], &Watch::default());
+    scene.camera = Camera::new([-1.5, 0.0, 0.0], [-1.5, 0.0, -5.0], [0.0, 1.0, 0.0], projection).unwrap();
+    assert!(draw(&scene).is_err());
+    scene.camera = Camera::new([-1.5, 0.0, 1.01], [-1.5, 0.0, -5.0], [0.0, 1.0, 0.0], projection).unwrap();
+    assert!(draw(&scene).is_ok());
 }

@@ -227,7 +227,7 @@ pub(super) fn film_place(scene: &Scene, column: usize, row: usize) -> (f64, f64)
 fn may_bounce(scene: &Scene, choice: &Choice, prepared: &Prepared) -> Result<(), NotDrawn> {
     let bounces = choice.has(Effect::Interreflection) && choice.bounces != super::scene::Bounces::Most(0);
     if !bounces
-        || matches!(scene.bodies.as_slice(), [only] if only.shape.is_convex() && !only.shape.holds(scene.camera.place))
+        || matches!(scene.bodies.as_slice(), [only] if only.shape.is_convex() && scene.is_seen_from_outside(only))
     {
         return Ok(());
     }

@@ -1,6 +1,6 @@
 //! A scene, ready to be drawn.
 
-use super::camera::Camera;
+use super::camera::{Camera, Projection};
 use super::grid::Grid;
 use super::material::{Material, NoMaterial};
 use super::shape::{Meeting, Ray, Shape, Start};
@@ -120,6 +120,17 @@ impl Scene {
             start: Start { body, part: meeting.part, outward: meeting.outward },
             material: self.bodies[body].material,
         })
+    }
+
+    /// True where all of a body is looked at from outside.
+    pub(super) fn is_seen_from_outside(&self, body: &Body) -> bool {
+        let camera = &self.camera;
+        match (&body.shape, camera.projection) {
+            (Shape::Plane(_), _) => true,
+            (shape, Projection::Perspective { .. }) => !shape.holds(camera.place),
+            // Rays start anywhere on the film.
+            (shape, Projection::Orthographic { .. }) => shape.heights(camera.place, camera.axes[2]).0 > 0.0,
+        }
     }
 
     /// True where a body stands between a spot and what is so far away.
