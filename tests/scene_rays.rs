@@ -5,10 +5,15 @@
 mod scans;
 #[path = "common/scenes.rs"]
 mod scenes;
+#[path = "common/units.rs"]
+mod units;
 
-use bbrf::simulate::{Body, Bounces, Camera, Kept, Layer, Mesh, Picture, Place, Projection, Scene, Shape, Watch, plan};
+use bbrf::simulate::{
+    Ball, Body, Bounces, Camera, Kept, Layer, Mesh, Picture, Place, Projection, Scene, Shape, Watch, plan,
+};
 use scans::Random;
 use scenes::*;
+use units::units;
 
 type Vector = [f64; 3];
 
@@ -151,4 +156,87 @@ fn what_gives_more_than_it_gets_is_not_looked_at_from_within() {
     assert!(draw(&scene).is_err());
     scene.camera = Camera::new([-1.5, 0.0, 1.01], [-1.5, 0.0, -5.0], [0.0, 1.0, 0.0], projection).unwrap();
     assert!(draw(&scene).is_ok());
+}
+
+/// Parallel projection does not know how far the camera stands.
+#[test]
+fn a_ball_looks_the_same_from_any_distance() {
+    let mut scene = scene(
+        vec![ball([0.0; 3], 1.0, 0)],
+        vec![grey(0.6)],
+        vec![white("sun", Place::Directional([0.6, 0.0, 0.8])), white("lamp", Place::Point([1.5, 2.0, 1.0], 2.0))],
+    );
+    scene.materials[0].specular = Some(gloss(0.5, 0.05));
+    scene.size = (90, 90);
+    let projection = Projection::Orthographic { width: 2.5 };
+    let mut seen_from = |direction: Vector, distance: f64| {
+        scene.camera = Camera::new(direction.map(|x| distance * x), [0.0; 3], [0.0, 1.0, 0.0], projection).unwrap();
+        draw(&scene, &everything(&scene))
+    };
+    for direction in [[0.0, 0.0, 1.0], [1.0, 0.0, 0.0]] {
+        let near = seen_from(direction, 4.0);
+        for distance in [1e3, 1e6, 1e9, 1e12] {
+            let far = seen_from(direction, distance);
+            let most = numbers(&near).zip(numbers(&far)).map(|(a, b)| units(a, b)).max().unwrap();
+            println!("from {distance:e} radii: {most} units in the last place");
+            assert!(most <= 1, "from {distance:e} radii: {most} units in the last place");
+        }
+    }
+}
+
+#[test]
+fn every_pixel_is_a_number() {
+    for height in [0.0, 1e-300, 1e-160, 1e-20, 1e-12] {
+        for reference in [1.0, 1e8, 1e300] {
+            let lamp = white("lamp", Place::Point([0.0, 0.0, height], reference));
+            let mut scene =
+                scene(vec![floor(0.0, 0), ball([0.0, 0.0, 2.0], 1.0, 1)], vec![grey(0.7), grey(0.0)], vec![lamp]);
+            scene.materials[0].specular = Some(gloss(0.5, 0.05));
+            scene.materials[0].specular.as_mut().unwrap().denominator = bbrf::terms::Denominator::CosICosV;
+            scene.bounces = Bounces::Most(2);
+            scene.samples = 4;
+            scene.size = (9, 9);
+            for width in [1e-160, 1e-20, 1.0] {
+                let projection = Projection::Orthographic { width };
+                scene.camera = Camera::new([0.0, 0.0, 0.5], [0.0; 3], [0.0, 1.0, 0.0], projection).unwrap();
+                for (bodies, choice) in [(2, everything(&scene)), (2, plan(&scene, 0.0).unwrap().choice)] {
+                    assert_eq!(scene.bodies.len(), bodies);
+                    let picture = draw(&scene, &choice);
+                    assert!(numbers(&picture).all(f32::is_finite), "{height:e}, {reference:e}, {width:e}");
+                }
+            }
+        }
+    }
+    // A ball alone, which is drawn another way.
+    for radius in [1e-30, 1.0] {
+        let lamp = white("lamp", Place::Point([0.0, 0.0, 2.0 * radius], 1e30));
+        let mut scene = scene(vec![ball([0.0; 3], radius, 0)], vec![grey(0.7)], vec![lamp]);
+        let projection = Projection::Orthographic { width: 3.0 * radius };
+        scene.camera = Camera::new([0.0, 0.0, 9.0 * radius], [0.0; 3], [0.0, 1.0, 0.0], projection).unwrap();
+        scene.materials[0].specular = Some(gloss(0.5, 0.05));
+        for choice in [everything(&scene), plan(&scene, 0.0).unwrap().choice] {
+            assert!(numbers(&draw(&scene, &choice)).all(f32::is_finite), "{radius:e}");
+        }
+    }
+}
+
+#[test]
+fn a_ball_far_from_the_origin_keeps_its_digits() {
+    let at = |centre: Vector, from: Vector| {
+        let mut scene = scene(
+            vec![Body { name: "ball".to_owned(), shape: Shape::Sphere(Ball { centre, radius: 1.0 }), material: 0 }],
+            vec![grey(0.6)],
+            vec![white("sun", Place::Directional([0.6, 0.0, 0.8]))],
+        );
+        scene.size = (64, 64);
+        scene.camera = Camera::new(from, centre, [0.0, 1.0, 0.0], Projection::Orthographic { width: 2.5 }).unwrap();
+        scene.materials[0].specular = Some(gloss(0.5, 0.05));
+        draw(&scene, &everything(&scene))
+    };
+    let expected = at([0.0; 3], [0.0, 0.0, 5.0]);
+    for far in [1e4, 1e6, 9e8] {
+        let found = at([0.0, 0.0, -far], [0.0, 0.0, 5.0]);
+        let most = numbers(&expected).zip(numbers(&found)).map(|(a, b)| units(a, b)).max().unwrap();
+        assert!(most <= 1, "at {far:e} radii: {most} units in the last place");
+    }
 }

@@ -178,7 +178,7 @@ impl Picture {
                         tracer.pixel((row * width + column) as u64, from, towards, ways, pixel, sample);
                         for (l, layer) in layers.iter().enumerate() {
                             for c in 0..channels {
-                                out[(l * channels + c) * width + column] = value(pixel, *layer, c) as f32;
+                                out[(l * channels + c) * width + column] = single(value(pixel, *layer, c));
                             }
                         }
                         out[layers.len() * channels * width + column] = pixel.variance.sqrt() as f32;
@@ -205,6 +205,11 @@ impl Picture {
     pub fn layer(&self, layer: Layer) -> Option<&[Vec<f32>]> {
         self.layers.iter().find(|(one, _)| *one == layer).map(|(_, planes)| planes.as_slice())
     }
+}
+
+/// In single precision: what is larger than any of its numbers is the largest of them.
+fn single(value: f64) -> f32 {
+    if value.is_nan() { 0.0 } else { (value as f32).clamp(f32::MIN, f32::MAX) }
 }
 
 fn value(pixel: &Pixel, layer: Layer, channel: usize) -> f64 {

@@ -18,6 +18,8 @@ use super::vector::{Vector, across, along, dot, scaled};
 const CERTAIN: u32 = 3;
 /// A path is cut here even where nothing is absorbed.
 const LONGEST_PATH: u32 = 10_000;
+/// No light is stronger at a place, and no lobe brighter: beside a lamp there is no limit to either, and a sum must stay a number.
+pub(super) const BRIGHTEST: f64 = 1e60;
 /// How often a path at a body with an interface follows the interface.
 const BY_INTERFACE: f64 = 0.5;
 
@@ -201,12 +203,14 @@ impl<'a> Tracer<'a> {
     fn lit(&self, spot: &Spot, view: Vector, light: usize, has_shadow: bool) -> Option<(f64, f64)> {
         let beam = self.scene.sources[light].beam(spot.place)?;
         let cosine = dot(spot.normal, beam.towards);
-        if cosine <= 0.0 || (has_shadow && self.scene.is_hidden(spot, beam.towards, beam.distance)) {
+        // Nor where a lamp is so near that it has no direction.
+        if cosine.is_nan() || cosine <= 0.0 || (has_shadow && self.scene.is_hidden(spot, beam.towards, beam.distance)) {
             return None;
         }
         let shining =
             self.interfaces[spot.material].as_ref().map_or(0.0, |one| one.value(spot.normal, beam.towards, view));
-        Some((cosine * beam.strength, shining * beam.strength))
+        let bounded = |value: f64| if value.is_nan() { 0.0 } else { value.min(BRIGHTEST) };
+        Some((bounded(cosine * beam.strength), bounded(shining * beam.strength)))
     }
 
     fn first(&self, material: usize, ways: &mut Ways<'_>) -> [Way; 3] {
