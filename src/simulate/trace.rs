@@ -9,7 +9,7 @@ use super::grid::Grid;
 use super::interface::{self, Interface};
 use super::material::OnGrid;
 use super::random::Stream;
-use super::scene::{Bounces, Scene, Spot};
+use super::scene::{Bodies, Bounces, Scene, Spot};
 use super::shape::{Ray, Shape};
 use super::transport::{Act, FILM, Spectra, Way, Ways};
 use super::vector::{Vector, across, along, dot, scaled};
@@ -39,6 +39,7 @@ pub(super) struct Pixel {
 #[derive(Debug)]
 pub(super) struct Tracer<'a> {
     pub(super) scene: &'a Scene,
+    bodies: Bodies<'a>,
     pub(super) choice: Choice,
     pub(super) spectra: &'a Spectra<'a>,
     interfaces: Vec<Option<Interface>>,
@@ -100,6 +101,7 @@ impl<'a> Tracer<'a> {
             surrounded: scene.materials.iter().map(table).collect(),
             albedo: spectra.materials.iter().map(|material: &OnGrid| material.albedo(grid)).collect(),
             interfaces,
+            bodies: Bodies::new(scene),
             scene,
             choice,
             spectra,
@@ -121,7 +123,7 @@ impl<'a> Tracer<'a> {
         let channels = self.spectra.channels.len();
         out.clear(channels);
         ways.tidy();
-        let Some(spot) = self.scene.spot(&Ray { from, towards, start: None }) else { return };
+        let Some(spot) = self.bodies.spot(&Ray { from, towards, start: None }) else { return };
         let view = scaled(towards, -1.0);
         self.direct(&spot, view, ways, out);
         // What is looked at from within is never open; a plane has no inside.
@@ -204,7 +206,8 @@ impl<'a> Tracer<'a> {
         let beam = self.scene.sources[light].beam(spot.place)?;
         let cosine = dot(spot.normal, beam.towards);
         // Nor where a lamp is so near that it has no direction.
-        if cosine.is_nan() || cosine <= 0.0 || (has_shadow && self.scene.is_hidden(spot, beam.towards, beam.distance)) {
+        if cosine.is_nan() || cosine <= 0.0 || (has_shadow && self.bodies.is_hidden(spot, beam.towards, beam.distance))
+        {
             return None;
         }
         let shining =
@@ -278,9 +281,9 @@ impl<'a> Tracer<'a> {
         let [luminescent, diffuse, specular] = self.first(spot.material, ways);
         let numbers = [stream.uniform(), stream.uniform()];
         let towards = cosine_direction(spot.normal, numbers);
-        let is_free = !self.scene.is_hidden(spot, towards, f64::INFINITY);
+        let is_free = !self.bodies.is_hidden(spot, towards, f64::INFINITY);
         let shine = self.interfaces[spot.material].as_ref().and_then(|one| one.draw(spot.normal, view, numbers));
-        let shine = shine.filter(|(towards, _)| !self.scene.is_hidden(spot, *towards, f64::INFINITY));
+        let shine = shine.filter(|(towards, _)| !self.bodies.is_hidden(spot, *towards, f64::INFINITY));
         for (light, _) in self.scene.sources.iter().enumerate().filter(|(_, source)| source.is_surround()) {
             if is_free {
                 self.gather(light, 1.0, [luminescent, diffuse], ways, out);
@@ -323,7 +326,7 @@ impl<'a> Tracer<'a> {
             };
             let Some((towards, factor, held)) = drawn else { return };
             weight *= factor;
-            let Some(hit) = self.scene.spot(&Ray { from: spot.place, towards, start: Some(spot.start) }) else {
+            let Some(hit) = self.bodies.spot(&Ray { from: spot.place, towards, start: Some(spot.start) }) else {
                 if bounce > 1 {
                     self.escaped(&held, weight, ways, out);
                 }

@@ -2,20 +2,16 @@
 //!
 //! No ray passes between two triangles that share a side: the test is that of Woop, Benthin and Wald (Watertight ray/triangle
 //! intersection, JCGT 2013), which looks at every side by its two corners alone, and so alike from either triangle.
-//!
-//! The tree is our own because the maintained ones count in single precision or ask for another version of the linear algebra; its boxes
-//! are split at the median of the longest side.
 
 use std::collections::HashMap;
 
+use super::tree::{Item, Tree, largest};
 use super::{Meeting, Ray, Start};
 use crate::simulate::vector::{Vector, along, cross, dot, length, minus, plus, scaled, unit};
 
 /// The next coordinate, and the one after it.
 const NEXT: [[usize; 2]; 3] = [[1, 2], [2, 0], [0, 1]];
 
-/// Triangles in a leaf.
-const LEAF: usize = 4;
 /// Triangles of which it is proven that they are convex: the proof takes triangles times corners.
 const PROVEN: usize = 2000;
 
@@ -23,7 +19,7 @@ const PROVEN: usize = 2000;
 #[derive(Debug, Clone, PartialEq)]
 pub struct Mesh {
     triangles: Vec<Triangle>,
-    nodes: Vec<Node>,
+    tree: Tree,
     around: (Vector, f64),
     /// What is no farther from a place on it may be that place, by rounding.
     near: f64,
@@ -58,16 +54,6 @@ struct Sheared {
     axes: [usize; 3],
     /// Slopes in the two others, and the inverse of the speed along the first.
     slopes: [f64; 3],
-}
-
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct Node {
-    low: Vector,
-    high: Vector,
-    /// First triangle and how many, or 0 and the node of the second half; the first half is the next node.
-    first: usize,
-    count: usize,
-    second: usize,
 }
 
 /// Numbers that make no mesh.
@@ -122,10 +108,18 @@ impl Mesh {
         // An open bowl sees itself from within; what is flat does not.
         let is_convex =
             all.len() <= PROVEN && is_below(&all, radius, 1.0) && (is_closed || is_below(&all, radius, -1.0));
-        let mut nodes = Vec::new();
-        let count = all.len();
-        split(&mut all, 0, count, &mut nodes);
-        Ok(Self { triangles: all, nodes, around: (centre, radius), near, is_convex, is_closed })
+        let item = |(number, one): (usize, &Triangle)| {
+            let (low, high) = ends(std::slice::from_ref(one));
+            Item { number, low, high, middle: one.middle() }
+        };
+        let (tree, order) = Tree::new(all.iter().enumerate().map(item).collect(), near);
+        let all = order.into_iter().map(|number| all[number]).collect();
+        Ok(Self { triangles: all, tree, around: (centre, radius), near, is_convex, is_closed })
+    }
+
+    /// Its least and its greatest coordinates.
+    pub(super) fn ends(&self) -> (Vector, Vector) {
+        ends(&self.triangles)
     }
 
     pub(super) fn around(&self) -> (Vector, f64) {
@@ -161,24 +155,10 @@ impl Mesh {
             return None;
         }
         let lifted = Ray { from: own.map_or(ray.from, |start| self.lifted(ray, start)), ..*ray };
-        let (sheared, boxes) = (Sheared::new(&lifted), Boxes::new(&lifted, self.near));
+        let sheared = Sheared::new(&lifted);
         let (mut found, mut nearest) = (None, limit);
-        let mut waiting = [0_usize; 64];
-        let mut depth = 1;
-        while depth > 0 {
-            depth -= 1;
-            let at = waiting[depth];
-            let node = &self.nodes[at];
-            if !boxes.meet(node, nearest) {
-                continue;
-            }
-            if node.count == 0 {
-                waiting[depth] = node.second;
-                waiting[depth + 1] = at + 1;
-                depth += 2;
-                continue;
-            }
-            for part in node.first..node.first + node.count {
+        self.tree.walk(&lifted, limit, |parts| {
+            for part in parts {
                 let Some(t) = self.triangles[part].meet(&sheared) else { continue };
                 let distance = self.beyond(ray, own, part, t);
                 if let Some(distance) = distance.filter(|t| *t > 0.0 && *t < nearest) {
@@ -188,7 +168,8 @@ impl Mesh {
                     found = Some(Meeting { distance, place, outward: self.triangles[part].normal, part });
                 }
             }
-        }
+            nearest
+        });
         found
     }
 
@@ -317,43 +298,9 @@ fn side_exactly(a: Vector, b: Vector) -> f64 {
     a[0].mul_add(b[1], -product) + lost
 }
 
-/// The boxes of the tree as one ray meets them: a little larger than they are, by what the test of a triangle may round.
-struct Boxes {
-    /// Where the ray starts, moved out of each box on either side of it.
-    low: Vector,
-    high: Vector,
-    inverse: Vector,
-}
-
-impl Boxes {
-    fn new(ray: &Ray, near: f64) -> Self {
-        let slack = near + 16.0 * f64::EPSILON * largest(ray.from);
-        let moved = |by: f64| ray.from.map(|x| x + by);
-        Self { low: moved(slack), high: moved(-slack), inverse: ray.towards.map(|speed| 1.0 / speed) }
-    }
-
-    #[inline]
-    fn meet(&self, node: &Node, limit: f64) -> bool {
-        let (mut enter, mut leave) = (0.0_f64, limit);
-        for k in 0..3 {
-            let a = (node.low[k] - self.low[k]) * self.inverse[k];
-            let b = (node.high[k] - self.high[k]) * self.inverse[k];
-            enter = enter.max(a.min(b));
-            leave = leave.min(a.max(b));
-        }
-        // Three roundings of either (Ize 2013, Robust BVH ray traversal).
-        enter <= leave * (1.0 + 4.0 * f64::EPSILON)
-    }
-}
-
 /// The normal of a triangle, as long as twice its area.
 fn twice_area(corners: &[Vector; 3]) -> Vector {
     cross(minus(corners[1], corners[0]), minus(corners[2], corners[0]))
-}
-
-/// The largest coordinate of a place.
-fn largest(place: Vector) -> f64 {
-    place.iter().fold(0.0, |most: f64, x| most.max(x.abs()))
 }
 
 fn ends(triangles: &[Triangle]) -> (Vector, Vector) {
@@ -365,24 +312,6 @@ fn ends(triangles: &[Triangle]) -> (Vector, Vector) {
         }
     }
     (low, high)
-}
-
-fn split(all: &mut [Triangle], first: usize, last: usize, nodes: &mut Vec<Node>) {
-    let (low, high) = ends(&all[first..last]);
-    let at = nodes.len();
-    nodes.push(Node { low, high, first, count: last - first, second: 0 });
-    if last - first <= LEAF {
-        return;
-    }
-    let size = minus(high, low);
-    let side = (0..3).fold(0, |most, k| if size[k] > size[most] { k } else { most });
-    let middle = (first + last) / 2;
-    all[first..last].select_nth_unstable_by(middle - first, |a, b| a.middle()[side].total_cmp(&b.middle()[side]));
-    split(all, first, middle, nodes);
-    let second = nodes.len();
-    split(all, middle, last, nodes);
-    nodes[at].count = 0;
-    nodes[at].second = second;
 }
 
 /// True where no corner lies above any triangle, on the side of its normal or on the other: normals point outwards.
