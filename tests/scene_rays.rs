@@ -184,6 +184,11 @@ fn a_ball_looks_the_same_from_any_distance() {
     }
 }
 
+/// So small that another colour space has a number for it, too.
+fn is_small(value: f32) -> bool {
+    value.abs() <= 1e36
+}
+
 #[test]
 fn every_pixel_is_a_number() {
     for height in [0.0, 1e-300, 1e-160, 1e-20, 1e-12] {
@@ -202,7 +207,7 @@ fn every_pixel_is_a_number() {
                 for (bodies, choice) in [(2, everything(&scene)), (2, plan(&scene, 0.0).unwrap().choice)] {
                     assert_eq!(scene.bodies.len(), bodies);
                     let picture = draw(&scene, &choice);
-                    assert!(numbers(&picture).all(f32::is_finite), "{height:e}, {reference:e}, {width:e}");
+                    assert!(numbers(&picture).all(is_small), "{height:e}, {reference:e}, {width:e}");
                 }
             }
         }
@@ -215,7 +220,7 @@ fn every_pixel_is_a_number() {
         scene.camera = Camera::new([0.0, 0.0, 9.0 * radius], [0.0; 3], [0.0, 1.0, 0.0], projection).unwrap();
         scene.materials[0].specular = Some(gloss(0.5, 0.05));
         for choice in [everything(&scene), plan(&scene, 0.0).unwrap().choice] {
-            assert!(numbers(&draw(&scene, &choice)).all(f32::is_finite), "{radius:e}");
+            assert!(numbers(&draw(&scene, &choice)).all(is_small), "{radius:e}");
         }
     }
 }

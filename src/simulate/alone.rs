@@ -5,7 +5,7 @@ use super::choice::Choice;
 use super::convex::{Colours, Component, Lighting, Renderer, Scene as OneBody, Sphere};
 use super::effect::Effect;
 use super::film::Film;
-use super::picture::Layer;
+use super::picture::{LARGEST, Layer};
 use super::scene::Scene;
 use super::shape::{Ball, Shape};
 use super::source::Place;
@@ -118,7 +118,7 @@ pub(super) fn draw(
             }
             let mut plane = Vec::with_capacity(width * height);
             (0..height)
-                .for_each(|row| plane.extend(film.row(row, c).iter().map(|value| value.clamp(f32::MIN, f32::MAX))));
+                .for_each(|row| plane.extend(film.row(row, c).iter().map(|value| value.clamp(-LARGEST, LARGEST))));
             plane
         };
         all.push((0..3).map(plane).collect());

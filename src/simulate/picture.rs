@@ -207,9 +207,12 @@ impl Picture {
     }
 }
 
-/// In single precision: what is larger than any of its numbers is the largest of them.
+/// The largest number of a pixel: of three of them another colour space makes numbers, too.
+pub(super) const LARGEST: f32 = 1e36;
+
+/// In single precision.
 fn single(value: f64) -> f32 {
-    if value.is_nan() { 0.0 } else { (value as f32).clamp(f32::MIN, f32::MAX) }
+    if value.is_nan() { 0.0 } else { (value as f32).clamp(-LARGEST, LARGEST) }
 }
 
 fn value(pixel: &Pixel, layer: Layer, channel: usize) -> f64 {
