@@ -5,10 +5,11 @@ use super::choice::Choice;
 use super::convex::{Colours, Component, Lighting, Renderer, Scene as OneBody, Sphere};
 use super::effect::Effect;
 use super::film::Film;
-use super::picture::Layer;
+use super::picture::{LARGEST, Layer};
 use super::scene::Scene;
 use super::shape::{Ball, Shape};
 use super::source::Place;
+use super::trace::BRIGHTEST;
 use super::transport::{Act, FILM, Ways};
 use super::vector::{Vector, dot, length, minus};
 use crate::terms::{Denominator, Distribution, TorranceSparrow};
@@ -57,7 +58,8 @@ impl Alone {
             Place::Point(place, reference) => {
                 let way = minus(place, *centre).map(|x| x / radius);
                 // Next to the surface, and within it, the strength is that of places and not of pixels.
-                (length(way) > 1.001).then(|| (Lighting::Point(seen(way)), (reference / radius).powi(2)))?
+                (length(way) > 1.001)
+                    .then(|| (Lighting::Point(seen(way)), (reference / radius).powi(2).min(BRIGHTEST)))?
             }
             Place::Surround => return None,
         };
@@ -115,7 +117,8 @@ pub(super) fn draw(
                 return vec![0.0; width * height];
             }
             let mut plane = Vec::with_capacity(width * height);
-            (0..height).for_each(|row| plane.extend_from_slice(film.row(row, c)));
+            (0..height)
+                .for_each(|row| plane.extend(film.row(row, c).iter().map(|value| value.clamp(-LARGEST, LARGEST))));
             plane
         };
         all.push((0..3).map(plane).collect());

@@ -1,16 +1,16 @@
 //! The specular term between any two directions, and directions drawn where it is bright.
 
+mod around;
+
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::sync::{Arc, Mutex};
 
-use rayon::prelude::*;
+pub(super) use around::at;
 
 use super::vector::{Vector, across, along, dot, minus, plus, scaled};
 use crate::quantity::HalfAngles;
-use crate::terms::{Denominator, Distribution, HalfSpace, Lobe, TorranceSparrow, fresnel};
+use crate::terms::{Denominator, Distribution, Lobe, TorranceSparrow, fresnel};
 
-/// Angles of viewing that the light from all around is tabulated at.
-const VIEWS: usize = 65;
 /// Most of these tables that are kept.
 const MOST_TABLES: usize = 32;
 
@@ -148,24 +148,9 @@ impl Interface {
         weight.is_finite().then_some((light, weight))
     }
 
-    /// What the interface sends of light from all around, over that which a perfect diffuser does, at cosines of viewing from 0 to 1.
+    /// What the interface sends of light from all around, over that which a perfect diffuser does, as [`at`] takes it.
     pub(super) fn surrounded(&self) -> Vec<f64> {
-        let normal = [0.0, 0.0, 1.0];
-        let sum = |k: usize| {
-            let cosine = (k as f64 / (VIEWS - 1) as f64).max(1e-6);
-            let sine = (1.0 - cosine * cosine).max(0.0).sqrt();
-            let (view, mut sum) = ([sine, 0.0, cosine], 0.0);
-            let lights = HalfSpace::new(sine, cosine, self.half_width());
-            let done: Result<(), std::convert::Infallible> = lights.each_direction(|light, solid_angle| {
-                let value = self.value(normal, light, view);
-                sum += if value.is_finite() { value * solid_angle } else { 0.0 };
-                Ok(())
-            });
-            match done {
-                Ok(()) => sum / PI,
-            }
-        };
-        (0..VIEWS).into_par_iter().map(sum).collect()
+        around::table(self)
     }
 }
 
@@ -184,23 +169,6 @@ pub(super) fn surrounded(term: &TorranceSparrow) -> Arc<Vec<f64>> {
     }
     kept.push((term, Arc::clone(&table)));
     table
-}
-
-/// A table of [`Interface::surrounded`] at a cosine: the cubic through four of its points, straight where the term may end at no
-/// number as the view grazes.
-pub(super) fn at(table: &[f64], cosine: f64) -> f64 {
-    let place = cosine.clamp(0.0, 1.0) * (table.len() - 1) as f64;
-    let before = (place as usize).min(table.len() - 2);
-    let part = place - before as f64;
-    if before < 2 {
-        return (1.0 - part) * table[before] + part * table[before + 1];
-    }
-    let first = (before - 1).min(table.len() - 4);
-    let x = place - first as f64;
-    let share = |k: usize| {
-        (0..4).filter(|other| *other != k).map(|other| (x - other as f64) / (k as f64 - other as f64)).product::<f64>()
-    };
-    (0..4).map(|k| share(k) * table[first + k]).sum::<f64>().max(0.0)
 }
 
 impl Spread {

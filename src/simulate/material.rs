@@ -46,6 +46,15 @@ pub enum NoMaterial {
 }
 
 impl Material {
+    /// Its interface, where that reflects at any wavelength: one of no intensity is none.
+    pub(super) fn interface(&self) -> Option<TorranceSparrow> {
+        let reflects = |term: &TorranceSparrow| match self.intensity.as_slice() {
+            [] => term.intensity != 0.0,
+            list => list.iter().any(|(_, c)| *c != 0.0),
+        };
+        self.specular.filter(reflects)
+    }
+
     /// Looks whether it can be drawn.
     ///
     /// # Errors

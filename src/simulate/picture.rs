@@ -178,7 +178,7 @@ impl Picture {
                         tracer.pixel((row * width + column) as u64, from, towards, ways, pixel, sample);
                         for (l, layer) in layers.iter().enumerate() {
                             for c in 0..channels {
-                                out[(l * channels + c) * width + column] = value(pixel, *layer, c) as f32;
+                                out[(l * channels + c) * width + column] = single(value(pixel, *layer, c));
                             }
                         }
                         out[layers.len() * channels * width + column] = pixel.variance.sqrt() as f32;
@@ -207,6 +207,14 @@ impl Picture {
     }
 }
 
+/// The largest number of a pixel: of three of them another colour space makes numbers, too.
+pub(super) const LARGEST: f32 = 1e36;
+
+/// In single precision.
+fn single(value: f64) -> f32 {
+    if value.is_nan() { 0.0 } else { (value as f32).clamp(-LARGEST, LARGEST) }
+}
+
 fn value(pixel: &Pixel, layer: Layer, channel: usize) -> f64 {
     match layer {
         Layer::Total => pixel.luminescent[channel] + pixel.diffuse[channel] + pixel.specular[channel],
@@ -227,7 +235,7 @@ pub(super) fn film_place(scene: &Scene, column: usize, row: usize) -> (f64, f64)
 pub(super) fn may_bounce(scene: &Scene, choice: &Choice, prepared: &Prepared) -> Result<(), NotDrawn> {
     let bounces = choice.has(Effect::Interreflection) && choice.bounces != super::scene::Bounces::Most(0);
     if !bounces
-        || matches!(scene.bodies.as_slice(), [only] if only.shape.is_convex() && !only.shape.holds(scene.camera.place))
+        || matches!(scene.bodies.as_slice(), [only] if only.shape.is_convex() && scene.is_seen_from_outside(only))
     {
         return Ok(());
     }
@@ -248,7 +256,7 @@ pub(super) fn may_bounce(scene: &Scene, choice: &Choice, prepared: &Prepared) ->
 /// The largest directional albedo of an interface of intensity 1 up to 80 degrees: with the paper's denominator that beyond has no
 /// bound.
 fn interface_albedo(material: &super::material::Material) -> f64 {
-    let Some(term) = material.specular else { return 0.0 };
+    let Some(term) = material.interface() else { return 0.0 };
     let term = crate::terms::Term::TorranceSparrow(crate::terms::TorranceSparrow { intensity: 1.0, ..term });
     let at = |theta: f64| {
         let direction = crate::quantity::Direction::from_degrees(theta, 0.0).ok()?;

@@ -1,11 +1,15 @@
 //! A scene, ready to be drawn.
 
-use super::camera::Camera;
+mod nearest;
+
+pub(super) use nearest::Bodies;
+
+use super::camera::{Camera, Projection};
 use super::grid::Grid;
 use super::material::{Material, NoMaterial};
-use super::shape::{Meeting, Ray, Shape, Start};
+use super::shape::{Shape, Start};
 use super::source::Source;
-use super::vector::{Vector, along, dot, scaled};
+use super::vector::Vector;
 use crate::donaldson::Observer;
 
 /// Most bodies, materials or lights.
@@ -104,38 +108,15 @@ pub(super) struct Spot {
 }
 
 impl Scene {
-    /// The first body on a ray.
-    #[inline]
-    pub(super) fn spot(&self, ray: &Ray) -> Option<Spot> {
-        let mut nearest: Option<(Meeting, usize)> = None;
-        for (body, one) in self.bodies.iter().enumerate() {
-            let limit = nearest.as_ref().map_or(f64::INFINITY, |(meeting, _)| meeting.distance);
-            let own = ray.start.as_ref().filter(|start| start.body == body);
-            if let Some(meeting) = one.shape.meet(ray, own, limit) {
-                nearest = Some((meeting, body));
-            }
+    /// True where all of a body is looked at from outside.
+    pub(super) fn is_seen_from_outside(&self, body: &Body) -> bool {
+        let camera = &self.camera;
+        match (&body.shape, camera.projection) {
+            (Shape::Plane(_), _) => true,
+            (shape, Projection::Perspective { .. }) => !shape.holds(camera.place),
+            // Rays start anywhere on the film.
+            (shape, Projection::Orthographic { .. }) => shape.heights(camera.place, camera.axes[2]).0 > 0.0,
         }
-        let (meeting, body) = nearest?;
-        let place = along(ray.from, ray.towards, meeting.distance);
-        let is_outside = dot(meeting.outward, ray.towards) <= 0.0;
-        Some(Spot {
-            place,
-            normal: if is_outside { meeting.outward } else { scaled(meeting.outward, -1.0) },
-            start: Start { body, part: meeting.part, outward: meeting.outward },
-            material: self.bodies[body].material,
-        })
-    }
-
-    /// True where a body stands between a spot and what is so far away.
-    #[inline]
-    pub(super) fn is_hidden(&self, spot: &Spot, towards: Vector, distance: f64) -> bool {
-        let ray = Ray { from: spot.place, towards, start: Some(spot.start) };
-        // What touches the source itself does not hide it.
-        let limit = distance * (1.0 - 1e-12);
-        self.bodies.iter().enumerate().any(|(body, one)| {
-            let own = ray.start.as_ref().filter(|start| start.body == body);
-            one.shape.meet(&ray, own, limit).is_some()
-        })
     }
 
     /// Looks whether it can be drawn.

@@ -9,7 +9,7 @@ use super::grid::Grid;
 use super::interface::{self, Interface};
 use super::material::OnGrid;
 use super::random::Stream;
-use super::scene::{Bounces, Scene, Spot};
+use super::scene::{Bodies, Bounces, Scene, Spot};
 use super::shape::{Ray, Shape};
 use super::transport::{Act, FILM, Spectra, Way, Ways};
 use super::vector::{Vector, across, along, dot, scaled};
@@ -18,6 +18,8 @@ use super::vector::{Vector, across, along, dot, scaled};
 const CERTAIN: u32 = 3;
 /// A path is cut here even where nothing is absorbed.
 const LONGEST_PATH: u32 = 10_000;
+/// No light is stronger at a place, and no lobe brighter: beside a lamp there is no limit to either, and a sum must stay a number.
+pub(super) const BRIGHTEST: f64 = 1e60;
 /// How often a path at a body with an interface follows the interface.
 const BY_INTERFACE: f64 = 0.5;
 
@@ -37,6 +39,7 @@ pub(super) struct Pixel {
 #[derive(Debug)]
 pub(super) struct Tracer<'a> {
     pub(super) scene: &'a Scene,
+    bodies: Bodies<'a>,
     pub(super) choice: Choice,
     pub(super) spectra: &'a Spectra<'a>,
     interfaces: Vec<Option<Interface>>,
@@ -82,14 +85,14 @@ impl Pixel {
 impl<'a> Tracer<'a> {
     pub(super) fn new(scene: &'a Scene, choice: Choice, grid: &Grid, spectra: &'a Spectra<'a>, eye: Vec<f64>) -> Self {
         let of_material = |material: &super::material::Material| {
-            material.specular.filter(|_| choice.has(Effect::Specular)).as_ref().map(Interface::new)
+            material.interface().filter(|_| choice.has(Effect::Specular)).as_ref().map(Interface::new)
         };
         let interfaces: Vec<Option<Interface>> = scene.materials.iter().map(of_material).collect();
         let is_surrounded =
             choice.has(Effect::Surround) && scene.sources.iter().any(super::source::Source::is_surround);
         let table = |material: &super::material::Material| {
             material
-                .specular
+                .interface()
                 .filter(|_| is_surrounded && choice.has(Effect::Specular))
                 .as_ref()
                 .map(interface::surrounded)
@@ -98,6 +101,7 @@ impl<'a> Tracer<'a> {
             surrounded: scene.materials.iter().map(table).collect(),
             albedo: spectra.materials.iter().map(|material: &OnGrid| material.albedo(grid)).collect(),
             interfaces,
+            bodies: Bodies::new(scene),
             scene,
             choice,
             spectra,
@@ -119,7 +123,7 @@ impl<'a> Tracer<'a> {
         let channels = self.spectra.channels.len();
         out.clear(channels);
         ways.tidy();
-        let Some(spot) = self.scene.spot(&Ray { from, towards, start: None }) else { return };
+        let Some(spot) = self.bodies.spot(&Ray { from, towards, start: None }) else { return };
         let view = scaled(towards, -1.0);
         self.direct(&spot, view, ways, out);
         // What is looked at from within is never open; a plane has no inside.
@@ -201,12 +205,15 @@ impl<'a> Tracer<'a> {
     fn lit(&self, spot: &Spot, view: Vector, light: usize, has_shadow: bool) -> Option<(f64, f64)> {
         let beam = self.scene.sources[light].beam(spot.place)?;
         let cosine = dot(spot.normal, beam.towards);
-        if cosine <= 0.0 || (has_shadow && self.scene.is_hidden(spot, beam.towards, beam.distance)) {
+        // Nor where a lamp is so near that it has no direction.
+        if cosine.is_nan() || cosine <= 0.0 || (has_shadow && self.bodies.is_hidden(spot, beam.towards, beam.distance))
+        {
             return None;
         }
         let shining =
             self.interfaces[spot.material].as_ref().map_or(0.0, |one| one.value(spot.normal, beam.towards, view));
-        Some((cosine * beam.strength, shining * beam.strength))
+        let bounded = |value: f64| if value.is_nan() { 0.0 } else { value.min(BRIGHTEST) };
+        Some((bounded(cosine * beam.strength), bounded(shining * beam.strength)))
     }
 
     fn first(&self, material: usize, ways: &mut Ways<'_>) -> [Way; 3] {
@@ -274,9 +281,9 @@ impl<'a> Tracer<'a> {
         let [luminescent, diffuse, specular] = self.first(spot.material, ways);
         let numbers = [stream.uniform(), stream.uniform()];
         let towards = cosine_direction(spot.normal, numbers);
-        let is_free = !self.scene.is_hidden(spot, towards, f64::INFINITY);
+        let is_free = !self.bodies.is_hidden(spot, towards, f64::INFINITY);
         let shine = self.interfaces[spot.material].as_ref().and_then(|one| one.draw(spot.normal, view, numbers));
-        let shine = shine.filter(|(towards, _)| !self.scene.is_hidden(spot, *towards, f64::INFINITY));
+        let shine = shine.filter(|(towards, _)| !self.bodies.is_hidden(spot, *towards, f64::INFINITY));
         for (light, _) in self.scene.sources.iter().enumerate().filter(|(_, source)| source.is_surround()) {
             if is_free {
                 self.gather(light, 1.0, [luminescent, diffuse], ways, out);
@@ -319,7 +326,7 @@ impl<'a> Tracer<'a> {
             };
             let Some((towards, factor, held)) = drawn else { return };
             weight *= factor;
-            let Some(hit) = self.scene.spot(&Ray { from: spot.place, towards, start: Some(spot.start) }) else {
+            let Some(hit) = self.bodies.spot(&Ray { from: spot.place, towards, start: Some(spot.start) }) else {
                 if bounce > 1 {
                     self.escaped(&held, weight, ways, out);
                 }

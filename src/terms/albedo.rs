@@ -65,9 +65,8 @@ fn lit_from(incidence: &Direction) -> Direction {
     Direction::from_degrees(incidence.theta_deg(), 0.0).unwrap_or(*incidence)
 }
 
-/// The half vectors that belong to one direction, and with them all others: of viewing for light from it, of light for a view from
-/// it.
-pub(crate) struct HalfSpace {
+/// The half vectors that belong to one direction of light, and with them all directions of viewing.
+struct HalfSpace {
     sine: f64,
     cosine: f64,
     tangent: f64,
@@ -76,7 +75,7 @@ pub(crate) struct HalfSpace {
 
 impl HalfSpace {
     /// Of a direction at phi = 0 with this sine and cosine (above 0) of theta, for a lobe of this half width, rad.
-    pub(crate) fn new(sine: f64, cosine: f64, width: f64) -> Self {
+    fn new(sine: f64, cosine: f64, width: f64) -> Self {
         Self { sine, cosine, tangent: sine / cosine, width }
     }
 
@@ -99,7 +98,7 @@ impl HalfSpace {
     }
 
     /// Calls with every direction of the rule, of length 1 and the normal along z, and its solid angle.
-    pub(crate) fn each_direction<E>(&self, mut visit: impl FnMut([f64; 3], f64) -> Result<(), E>) -> Result<(), E> {
+    fn each_direction<E>(&self, mut visit: impl FnMut([f64; 3], f64) -> Result<(), E>) -> Result<(), E> {
         for (alpha, alpha_weight) in gauss::<AZIMUTHS>(&self.azimuths()) {
             let delta = (self.tangent * alpha.cos()).atan();
             for (phi, phi_weight) in gauss::<POLARS>(&self.polars(delta)) {

@@ -16,7 +16,6 @@ mod quadrature;
 mod term;
 mod torrance_sparrow;
 
-pub(crate) use albedo::HalfSpace;
 pub use denominator::Denominator;
 pub use distribution::{Distribution, DistributionValue, Lobe};
 pub use fresnel::{FresnelValue, fresnel};

@@ -1,7 +1,7 @@
 //! A box.
 
 use super::{Meeting, Ray, Start};
-use crate::simulate::vector::{Vector, dot, minus, scaled};
+use crate::simulate::vector::{Vector, along, dot, minus, scaled};
 
 /// A box with sides along three directions.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -48,7 +48,8 @@ impl Cuboid {
             return None;
         }
         let outward = scaled(self.axes[k], sign * 1.0_f64.copysign(dot(ray.towards, self.axes[k])));
-        Some(Meeting { distance, outward, part: 2 * k + usize::from(goes_in) })
+        let place = along(ray.from, ray.towards, distance);
+        Some(Meeting { distance, place, outward, part: 2 * k + usize::from(goes_in) })
     }
 
     pub(super) fn holds(&self, place: Vector) -> bool {

@@ -7,13 +7,16 @@ mod cuboid;
 mod mesh;
 mod plane;
 mod sphere;
+mod tree;
 
 pub use cuboid::Cuboid;
 pub use mesh::{Mesh, NoMesh};
 pub use plane::{Plane, Rectangle};
 pub use sphere::Ball;
 
-use super::vector::{Vector, dot, length, minus};
+pub(super) use tree::{Item, Tree};
+
+use super::vector::{Vector, dot, length, minus, plus};
 
 /// A ray that enters a sphere no deeper than the root of this, over its radius, does not meet it: rounding alone would say so at a pixel
 /// that looks exactly along its edge.
@@ -43,6 +46,8 @@ pub(super) struct Start {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Meeting {
     pub(super) distance: f64,
+    /// Where: it may have digits that the distance from afar has not.
+    pub(super) place: Vector,
     /// Normal out of the body.
     pub(super) outward: Vector,
     pub(super) part: usize,
@@ -87,6 +92,20 @@ impl Shape {
             Self::Plane(plane) => plane.around(),
             Self::Box(cuboid) => Some((cuboid.centre, length(cuboid.half))),
             Self::Mesh(mesh) => Some(mesh.around()),
+        }
+    }
+
+    /// Its least and its greatest coordinates; `None` where it has no end.
+    pub(super) fn ends(&self) -> Option<(Vector, Vector)> {
+        let about = |centre: Vector, reach: Vector| (minus(centre, reach), plus(centre, reach));
+        let reach = |axes: &[Vector], half: &[f64]| {
+            [0, 1, 2].map(|k| axes.iter().zip(half).map(|(axis, half)| (axis[k] * half).abs()).sum())
+        };
+        match self {
+            Self::Sphere(ball) => Some(about(ball.centre, [ball.radius; 3])),
+            Self::Plane(plane) => plane.rectangle.map(|ends| about(plane.point, reach(&ends.axes, &ends.half))),
+            Self::Box(cuboid) => Some(about(cuboid.centre, reach(&cuboid.axes, &cuboid.half))),
+            Self::Mesh(mesh) => Some(mesh.ends()),
         }
     }
 

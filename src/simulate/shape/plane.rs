@@ -34,13 +34,14 @@ impl Plane {
         if !(distance > 0.0 && distance < limit) {
             return None;
         }
+        let place = along(ray.from, ray.towards, distance);
         if let Some(ends) = &self.rectangle {
-            let place = minus(along(ray.from, ray.towards, distance), self.point);
-            if (0..2).any(|k| dot(place, ends.axes[k]).abs() > ends.half[k]) {
+            let aside = minus(place, self.point);
+            if (0..2).any(|k| dot(aside, ends.axes[k]).abs() > ends.half[k]) {
                 return None;
             }
         }
-        Some(Meeting { distance, outward: self.normal, part: 0 })
+        Some(Meeting { distance, place, outward: self.normal, part: 0 })
     }
 
     pub(super) fn around(&self) -> Option<(Vector, f64)> {

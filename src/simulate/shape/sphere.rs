@@ -3,6 +3,9 @@
 use super::{Meeting, Ray, Start};
 use crate::simulate::vector::{Vector, along, dot, minus, scaled};
 
+/// From so many radii on a sphere is met relative to its centre.
+const FAR: f64 = 100.0;
+
 /// A sphere.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ball {
@@ -19,6 +22,9 @@ impl Ball {
     pub(in crate::simulate) fn meet(&self, ray: &Ray, own: Option<&Start>, limit: f64) -> Option<Meeting> {
         let to_centre = minus(self.centre, ray.from);
         let middle = dot(to_centre, ray.towards);
+        if own.is_none() && middle.abs() > FAR * self.radius {
+            return self.meet_from_afar(ray, to_centre, middle, limit);
+        }
         let distance = if let Some(start) = own {
             let inwards = dot(start.outward, ray.towards);
             if inwards >= 0.0 {
@@ -44,6 +50,23 @@ impl Ball {
         let place = along(ray.from, ray.towards, distance);
         let outward = scaled(minus(place, self.centre), 1.0 / self.radius);
         let length = dot(outward, outward).sqrt();
-        Some(Meeting { distance, outward: scaled(outward, 1.0 / length), part: 0 })
+        Some(Meeting { distance, place, outward: scaled(outward, 1.0 / length), part: 0 })
+    }
+
+    /// The same from the place of the ray that is nearest to the centre, where the numbers are no larger than the sphere. Rounded once
+    /// each, and a second time along the ray, that place keeps all its digits.
+    fn meet_from_afar(&self, ray: &Ray, to_centre: Vector, middle: f64, limit: f64) -> Option<Meeting> {
+        let less = |way: Vector, by: f64| [0, 1, 2].map(|k| (-by).mul_add(ray.towards[k], way[k]));
+        let across = less(to_centre, middle);
+        let across = less(across, dot(across, ray.towards));
+        let square = self.radius * self.radius - dot(across, across);
+        let half = square.max(0.0).sqrt();
+        let distance = middle - half;
+        if square <= super::GRAZING * self.radius * self.radius || !(distance > 0.0 && distance < limit) {
+            return None;
+        }
+        let outward = scaled(along(across, ray.towards, half), -1.0 / self.radius);
+        let outward = scaled(outward, 1.0 / dot(outward, outward).sqrt());
+        Some(Meeting { distance, place: along(self.centre, outward, self.radius), outward, part: 0 })
     }
 }
