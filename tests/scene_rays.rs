@@ -134,7 +134,7 @@ fn an_interface_of_no_intensity_is_none() {
     for intensity in [Vec::new(), vec![(400.0, 0.0), (700.0, 0.0)]] {
         scene.materials[0].intensity = intensity;
         let in_full = draw(&scene, &everything(&scene));
-        let planned = plan(&scene, 0.0).unwrap();
+        let planned = plan(&scene, Kept::Colour, 0.0).unwrap();
         assert!(planned.bound.is_zero());
         let drawn = draw(&scene, &planned.choice.by_pixel());
         assert!(numbers(&drawn).zip(numbers(&in_full)).all(|(a, b)| a.to_bits() == b.to_bits()));
@@ -204,7 +204,8 @@ fn every_pixel_is_a_number() {
             for width in [1e-160, 1e-20, 1.0] {
                 let projection = Projection::Orthographic { width };
                 scene.camera = Camera::new([0.0, 0.0, 0.5], [0.0; 3], [0.0, 1.0, 0.0], projection).unwrap();
-                for (bodies, choice) in [(2, everything(&scene)), (2, plan(&scene, 0.0).unwrap().choice)] {
+                for (bodies, choice) in [(2, everything(&scene)), (2, plan(&scene, Kept::Colour, 0.0).unwrap().choice)]
+                {
                     assert_eq!(scene.bodies.len(), bodies);
                     let picture = draw(&scene, &choice);
                     assert!(numbers(&picture).all(is_small), "{height:e}, {reference:e}, {width:e}");
@@ -219,7 +220,7 @@ fn every_pixel_is_a_number() {
         let projection = Projection::Orthographic { width: 3.0 * radius };
         scene.camera = Camera::new([0.0, 0.0, 9.0 * radius], [0.0; 3], [0.0, 1.0, 0.0], projection).unwrap();
         scene.materials[0].specular = Some(gloss(0.5, 0.05));
-        for choice in [everything(&scene), plan(&scene, 0.0).unwrap().choice] {
+        for choice in [everything(&scene), plan(&scene, Kept::Colour, 0.0).unwrap().choice] {
             assert!(numbers(&draw(&scene, &choice)).all(is_small), "{radius:e}");
         }
     }

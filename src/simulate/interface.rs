@@ -125,8 +125,9 @@ impl Interface {
             Denominator::CosThetaI | Denominator::CosThetaV => over_one.min(by_half),
             Denominator::CosICosV => over_one * over_one.min(by_half),
         };
-        // F grows with theta_Q.
-        d * fresnel(&half(from, least_cos_q.max(0.0)), self.index_minus_one).value * angular
+        // F grows with theta_Q, or falls before it grows where n is above 2 + sqrt(3): it is largest at one of the ends.
+        let f = |cos_q: f64| fresnel(&half(from, cos_q), self.index_minus_one).value;
+        d * f(least_cos_q.max(0.0)).max(f(1.0)) * angular
     }
 
     /// A direction of light for a view, drawn by the lobe, with D F G / den over pi times its density; `None` where it falls below

@@ -8,7 +8,7 @@ use super::super::shape::{Ball, Cuboid, Mesh, Plane, Rectangle, Shape};
 use super::super::source::{Place, Source};
 use super::super::vector::{Vector, across, along, cross, dot, length, minus, plus, scaled, unit};
 use super::cone::{Cone, angle};
-use super::reach::{is_seen_from_outside, may_shade, may_shade_itself};
+use super::reach::{may_shade, may_shade_itself};
 
 /// How far a patch goes.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -81,7 +81,7 @@ pub(super) fn cut(scene: &Scene, most: usize) -> Vec<Patch> {
     for (number, body) in scene.bodies.iter().enumerate() {
         let mut cutter = Cutter { body: number, all: &mut all };
         // Where the camera is in a body, its inner side is what there is.
-        let is_within = !is_seen_from_outside(scene, body);
+        let is_within = !scene.is_seen_from_outside(body);
         if fine == 0 && !matches!(body.shape, Shape::Plane(_)) {
             cutter.whole(body, body.shape.is_convex() && !is_within);
             continue;

@@ -1,15 +1,15 @@
 //! How much light may reach a body, and which bodies may stand in each other's light or see each other.
 
-use super::super::camera::Projection;
 use super::super::interface::{Interface, surrounded};
-use super::super::scene::{Body, Scene};
+use super::super::scene::Scene;
 use super::super::shape::Shape;
 use super::super::source::{Place, Source};
 use super::super::vector::{dot, length, minus, scaled};
 use super::rings::{Ring, distance, rings};
 
-/// The light from all around at an interface is tabulated; its largest value may lie between two of the table, and beside its sum.
-const TABLE: f64 = 1.05;
+/// The light from all around at an interface is tabulated; its largest value may lie between two of the table, and beside its sum: by
+/// half a per cent at most, which a test of the table holds below one.
+const TABLE: f64 = 1.01;
 
 /// How much of each light there may be on each body.
 pub(super) struct Reach {
@@ -30,16 +30,8 @@ pub(super) struct Reach {
 impl Reach {
     pub(super) fn new(scene: &Scene) -> Self {
         let bodies = 0..scene.bodies.len();
-        let interfaces: Vec<Option<Interface>> = scene
-            .materials
-            .iter()
-            .map(|one| {
-                one.specular
-                    .filter(|term| term.intensity > 0.0 || one.intensity.iter().any(|(_, c)| *c > 0.0))
-                    .as_ref()
-                    .map(Interface::new)
-            })
-            .collect();
+        let interfaces: Vec<Option<Interface>> =
+            scene.materials.iter().map(|one| one.interface().as_ref().map(Interface::new)).collect();
         let interface = |body: usize| interfaces[scene.bodies[body].material].as_ref();
         let rings_of = |body: usize, source: &Source| match interface(body) {
             Some(one) if !source.is_surround() => rings(scene, &scene.bodies[body], source, one),
@@ -106,20 +98,10 @@ pub(super) fn most_lit(shape: &Shape, source: &Source) -> f64 {
     }
 }
 
-/// True where all of a body is looked at from outside.
-pub(super) fn is_seen_from_outside(scene: &Scene, body: &Body) -> bool {
-    let camera = &scene.camera;
-    match (&body.shape, camera.projection) {
-        (Shape::Plane(_), _) => true,
-        (shape, Projection::Perspective { .. }) => !shape.holds(camera.place),
-        (shape, Projection::Orthographic { .. }) => shape.heights(camera.place, camera.axes[2]).0 > 0.0,
-    }
-}
-
 /// True unless a body provably casts no shadow of a light on itself.
 pub(super) fn may_shade_itself(scene: &Scene, body: usize, source: &Source) -> bool {
     let body = &scene.bodies[body];
-    !(source.is_surround() || body.shape.is_convex() && is_seen_from_outside(scene, body))
+    !(source.is_surround() || body.shape.is_convex() && scene.is_seen_from_outside(body))
 }
 
 /// True unless a body provably casts no shadow of a light on another.
@@ -169,7 +151,7 @@ pub(super) fn may_shade(one: &Shape, other: &Shape, source: &Source) -> bool {
 pub(super) fn most_seen(scene: &Scene, from: usize, of: usize) -> f64 {
     let (one, other) = (&scene.bodies[from], &scene.bodies[of]);
     if from == of {
-        let is_out = one.shape.is_convex() && is_seen_from_outside(scene, one);
+        let is_out = one.shape.is_convex() && scene.is_seen_from_outside(one);
         return if is_out { 0.0 } else { 1.0 };
     }
     if let Shape::Plane(plane) = &one.shape {
@@ -191,6 +173,6 @@ pub(super) fn most_seen(scene: &Scene, from: usize, of: usize) -> f64 {
 
 /// The share of light from all around that the interface of a body sends on at most.
 pub(super) fn mirror(scene: &Scene, body: usize) -> f64 {
-    let term = scene.materials[scene.bodies[body].material].specular;
+    let term = scene.materials[scene.bodies[body].material].interface();
     term.map_or(0.0, |term| TABLE * surrounded(&term).iter().copied().fold(0.0, f64::max))
 }
