@@ -183,8 +183,8 @@ surround = true >> surround = false >> found 0 of `towards`, `theta_deg`, `at` a
 reference_distance = 2 >> reference_distance = 0 >> `light.reference_distance`: found 0
 refractive_index = 1.45 >> refractive_index = 0.9 >> `material.specular`: torrance-sparrow: `refractive_index`
 width_deg = 40 >> width = 40 >> `camera.projection`: found "perspective"; expected `width_deg` beside it
-width_deg = 40 >> width_deg = 180 >> `camera`: the camera sees a width of 180
-from = [0, 0, 5] >> from = [0, 0, 0] >> `camera`: the camera looks from where it stands
+width_deg = 40 >> width_deg = 180 >> line 19, column 1, `camera.width_deg`: the camera sees a width of 180
+from = [0, 0, 5] >> from = [0, 0, 0] >> `camera.at`: the camera looks from where it stands
 step = 10 >> step = 0.01 >> `wavelengths`: wavelengths from 400 to 700 nm in steps of 0.01 nm
 observer = 10 >> observer = 5 >> line 1, column 12, `observer`: invalid value: integer `5`, expected 2 or 10, degrees
 bounces = 3 >> bounces = "many" >> expected "all" or a whole number from 0

@@ -188,7 +188,7 @@ fn lights_of_different_units_are_added_only_where_their_strength_says_how() {
     let path = scene(folder.path(), &both, 20.0);
     bbrf().arg("plan").arg(&path).assert().code(2).stderr(
         contains("scene.toml, line 23, column 1, `light.spectrum`")
-            .and(contains("found a light in W m-2 nm-1, and light `light 1` in a relative unit"))
+            .and(contains("found a light in W m-2 nm-1, and light `light 1` in the relative unit of the CIE"))
             .and(contains("`strength`")),
     );
     for stated in [

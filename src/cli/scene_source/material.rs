@@ -7,7 +7,7 @@ use crate::cli::command::donaldson::material as matrices;
 use crate::cli::opened::open;
 use crate::dataset::{Document, Model};
 use crate::donaldson::{Complete, Luminescence, Reradiation};
-use crate::quantity::{Basis, Part, QuantityKind};
+use crate::quantity::{Basis, Part};
 use crate::simulate::Material;
 use crate::simulate::document::{Points, Source};
 use crate::terms::{Term, TermKind, TorranceSparrow};
@@ -40,9 +40,7 @@ pub(super) fn load(path: &str, source: &Source<'_>) -> Found {
         }
         (None, [one]) => of_model(path, source, &document, one),
         (None, []) => {
-            let matrices =
-                document.measurements.iter().filter(|one| one.quantity.kind == QuantityKind::DonaldsonMatrix);
-            let ids: Vec<String> = matrices.map(|one| one.id.to_string()).collect();
+            let ids: Vec<String> = matrices::choices(&document).iter().map(|one| one.id.to_string()).collect();
             if ids.len() > 1 {
                 return Err(miette!(
                     "{path}: holds several matrices ({}); name one with `matrix = \"ID\"`",

@@ -92,17 +92,21 @@ fn stored(
     Ok((Separation { stored: None, remark }, None))
 }
 
+/// The matrices of a document that may be chosen: the luminescent part that a separation leaves beside its matrix is none.
+pub(in crate::cli) fn choices(document: &Document) -> Vec<&Measurement> {
+    let is_matrix = |one: &&Measurement| {
+        one.quantity.kind == QuantityKind::DonaldsonMatrix && one.quantity.part != Part::Luminescent
+    };
+    document.measurements.iter().filter(is_matrix).collect()
+}
+
 /// The matrix of that id in a document, or its only one.
 pub(in crate::cli) fn pick<'a>(
     document: &'a Document,
     path: &str,
     id: Option<&str>,
 ) -> Result<&'a Measurement, miette::Report> {
-    // The luminescent part that a separation leaves beside its matrix is none to choose.
-    let is_matrix = |one: &&Measurement| {
-        one.quantity.kind == QuantityKind::DonaldsonMatrix && one.quantity.part != Part::Luminescent
-    };
-    let matrices: Vec<&Measurement> = document.measurements.iter().filter(is_matrix).collect();
+    let matrices = choices(document);
     let names = || matrices.iter().map(|one| one.id.to_string()).collect::<Vec<_>>().join(", ");
     match (id, matrices.as_slice()) {
         (Some(id), _) => document
