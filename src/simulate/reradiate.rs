@@ -143,21 +143,19 @@ impl<S: Simd, A: Real> pulp::NullaryFnOnce for Task<'_, S, A> {
     #[inline(always)]
     fn call(self) {
         let (simd, emission, excitation) = (self.simd, self.emission, self.panels[0].len());
-        let mut packed = vec![[A::zero(); ROWS]; excitation];
         let spectra = self.incident.chunks(ROWS * excitation);
         for (out, spectra) in self.out.chunks_mut(ROWS * emission).zip(spectra) {
-            // Side by side, so that the sums run along few pointers. What the last group has of the one before is not written.
-            for (row, spectrum) in spectra.chunks_exact(excitation).enumerate() {
-                packed.iter_mut().zip(spectrum).for_each(|(packed, value)| packed[row] = *value);
-            }
+            // Where fewer are left the last stands for those that are missing; what it makes of them is not written.
+            let last = spectra.len() / excitation - 1;
+            let spectra: [&[A]; ROWS] = std::array::from_fn(|row| &spectra[row.min(last) * excitation..][..excitation]);
             let mut first = 0;
             // Two at once make more sums than additions are under way.
             let (pairs, last) = self.panels.as_chunks::<2>();
             for pair in pairs {
-                first = write::<S, A, 2>(product(simd, &packed, *pair), first, emission, out);
+                first = write::<S, A, 2>(product(simd, spectra, *pair), first, emission, out);
             }
             for panel in last {
-                first = write::<S, A, 1>(product(simd, &packed, [*panel]), first, emission, out);
+                first = write::<S, A, 1>(product(simd, spectra, [*panel]), first, emission, out);
             }
         }
     }
@@ -171,11 +169,16 @@ fn write<S: Simd, A: Real, const V: usize>(
     emission: usize,
     out: &mut [A],
 ) -> usize {
-    let mut last = first;
+    let count = V * size_of::<A::Lanes<S>>() / size_of::<A>();
+    let last = emission.min(first + count);
     for (out, sums) in out.chunks_exact_mut(emission).zip(&sums) {
-        let numbers = A::numbers::<S>(sums);
-        last = emission.min(first + numbers.len());
-        out[first..last].copy_from_slice(&numbers[..last - first]);
+        let (out, numbers) = (&mut out[first..last], A::numbers::<S>(sums));
+        // Of a length that the compiler knows this is a store or two, of any other a call.
+        if out.len() == count {
+            out[..count].copy_from_slice(&numbers[..count]);
+        } else {
+            out.iter_mut().zip(numbers).for_each(|(out, number)| *out = *number);
+        }
     }
     last
 }
@@ -184,14 +187,16 @@ fn write<S: Simd, A: Real, const V: usize>(
 #[inline(always)]
 fn product<S: Simd, A: Real, const V: usize>(
     simd: S,
-    spectra: &[[A; ROWS]],
+    spectra: [&[A]; ROWS],
     panels: [&[A::Lanes<S>]; V],
 ) -> [[A::Lanes<S>; V]; ROWS] {
     let mut sums = [[A::splat(simd, A::zero()); V]; ROWS];
-    let panels = panels.map(|panel| &panel[..spectra.len()]);
-    for (k, incident) in spectra.iter().enumerate() {
-        for (sums, incident) in sums.iter_mut().zip(incident) {
-            let incident = A::splat(simd, *incident);
+    // All of one length, so that one look at a place serves for all.
+    let count = spectra[0].len();
+    let (spectra, panels) = (spectra.map(|spectrum| &spectrum[..count]), panels.map(|panel| &panel[..count]));
+    for k in 0..count {
+        for (sums, spectrum) in sums.iter_mut().zip(spectra) {
+            let incident = A::splat(simd, spectrum[k]);
             for (sum, panel) in sums.iter_mut().zip(panels) {
                 *sum = A::add_product(simd, incident, panel[k], *sum);
             }
