@@ -8,11 +8,11 @@ use std::sync::{Arc, Mutex};
 pub(super) use around::at;
 
 use super::vector::{Vector, across, along, dot, minus, plus, scaled};
-use crate::quantity::HalfAngles;
-use crate::terms::{Denominator, Distribution, Lobe, TorranceSparrow, fresnel};
+use crate::quantity::{Direction, HalfAngles};
+use crate::terms::{Denominator, Distribution, Lobe, Term, TorranceSparrow, fresnel};
 
-/// Most of these tables that are kept.
-const MOST_TABLES: usize = 32;
+/// Most interfaces whose making is kept.
+const MOST_KEPT: usize = 32;
 
 /// An interface, with what depends on its parameters alone. Its intensity is left to the spectra.
 #[derive(Debug, Clone)]
@@ -155,21 +155,41 @@ impl Interface {
     }
 }
 
-/// [`Interface::surrounded`], kept: the plan of a scene asks for it, and then the picture.
-pub(super) fn surrounded(term: &TorranceSparrow) -> Arc<Vec<f64>> {
-    static KEPT: Mutex<Vec<(TorranceSparrow, Arc<Vec<f64>>)>> = Mutex::new(Vec::new());
+/// What is long in the making of an interface, by its term of intensity 1: the plan of a scene asks for it, and then each picture.
+type Made<T> = Mutex<Vec<(TorranceSparrow, T)>>;
+
+fn kept<T: Clone>(all: &Made<T>, term: &TorranceSparrow, make: impl FnOnce(&TorranceSparrow) -> T) -> T {
     let term = TorranceSparrow { intensity: 1.0, ..*term };
-    let lock = || KEPT.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-    if let Some((_, table)) = lock().iter().find(|(one, _)| *one == term) {
-        return Arc::clone(table);
+    let lock = || all.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+    if let Some((_, made)) = lock().iter().find(|(one, _)| *one == term) {
+        return made.clone();
     }
-    let table = Arc::new(Interface::new(&term).surrounded());
-    let mut kept = lock();
-    if kept.len() >= MOST_TABLES {
-        kept.remove(0);
+    let made = make(&term);
+    let mut all = lock();
+    if all.len() >= MOST_KEPT {
+        all.remove(0);
     }
-    kept.push((term, Arc::clone(&table)));
-    table
+    all.push((term, made.clone()));
+    made
+}
+
+/// [`Interface::surrounded`], kept.
+pub(super) fn surrounded(term: &TorranceSparrow) -> Arc<Vec<f64>> {
+    static KEPT: Made<Arc<Vec<f64>>> = Mutex::new(Vec::new());
+    kept(&KEPT, term, |term| Arc::new(Interface::new(term).surrounded()))
+}
+
+/// The largest directional albedo of an interface of intensity 1 up to 80 degrees: with the paper's denominator that beyond has no
+/// bound.
+pub(super) fn most_albedo(term: &TorranceSparrow) -> f64 {
+    static KEPT: Made<f64> = Mutex::new(Vec::new());
+    kept(&KEPT, term, |term| {
+        let at = |theta: f64| {
+            let direction = Direction::from_degrees(theta, 0.0).ok()?;
+            Term::TorranceSparrow(*term).directional_albedo(&direction).ok().map(|found| found.value)
+        };
+        [0.0, 15.0, 30.0, 45.0, 60.0, 70.0, 80.0].into_iter().filter_map(at).fold(0.0, f64::max)
+    })
 }
 
 impl Spread {

@@ -8,6 +8,7 @@ use super::alone;
 use super::choice::Choice;
 use super::effect::Effect;
 use super::grid::{Grid, NoGrid};
+use super::interface::most_albedo;
 use super::material::OnGrid;
 use super::scene::{NotDrawn, Scene};
 use super::trace::{Pixel, Tracer};
@@ -241,7 +242,7 @@ pub(super) fn may_bounce(scene: &Scene, choice: &Choice, prepared: &Prepared) ->
     }
     for body in &scene.bodies {
         let (material, on_grid) = (&scene.materials[body.material], &prepared.materials[body.material]);
-        let interface = interface_albedo(material);
+        let interface = material.interface().map_or(0.0, |term| most_albedo(&term));
         let shares = [
             (on_grid.energy(&prepared.grid, interface), "the energy of a wavelength"),
             (on_grid.photons(&prepared.grid, interface), "the photons of a wavelength"),
@@ -251,16 +252,4 @@ pub(super) fn may_bounce(scene: &Scene, choice: &Choice, prepared: &Prepared) ->
         }
     }
     Ok(())
-}
-
-/// The largest directional albedo of an interface of intensity 1 up to 80 degrees: with the paper's denominator that beyond has no
-/// bound.
-fn interface_albedo(material: &super::material::Material) -> f64 {
-    let Some(term) = material.interface() else { return 0.0 };
-    let term = crate::terms::Term::TorranceSparrow(crate::terms::TorranceSparrow { intensity: 1.0, ..term });
-    let at = |theta: f64| {
-        let direction = crate::quantity::Direction::from_degrees(theta, 0.0).ok()?;
-        term.directional_albedo(&direction).ok().map(|found| found.value)
-    };
-    [0.0, 15.0, 30.0, 45.0, 60.0, 70.0, 80.0].into_iter().filter_map(at).fold(0.0, f64::max)
 }
