@@ -3,6 +3,7 @@
 use std::io::Cursor;
 
 use miette::miette;
+use rayon::prelude::*;
 
 use super::LAYERS;
 use super::result::{Brightest, Drawn};
@@ -35,14 +36,20 @@ pub(super) fn encode(
     let display = Srgb::new(picture.white, resolved.exposure).map_err(|error| miette!("{error}"))?;
     let linear = Srgb::new(picture.white, 1.0).map_err(|error| miette!("{error}"))?;
     let png = Png { display, gamut, depth };
-    let (mut files, mut drawn, mut parts) = (Vec::new(), Vec::new(), Vec::new());
-    for (layer, planes) in &picture.layers {
+    // Compressing takes longer than drawing: all layers at once.
+    let encoded = picture.layers.par_iter().map(|(layer, planes)| {
         let film = picture.film(scene, *layer).map_err(|error| miette!("{error}"))?;
         let (bytes, out_of_gamut) = png.encode(&film, &notes).map_err(|error| miette!("{error}"))?;
         let name = format!("{layer}.png");
-        drawn.push(Drawn::new(*layer, name.clone(), (&out_of_gamut, resolved.exposure), mean(&film), brightest(&film)));
-        files.push((name, bytes));
-        parts.push(part(picture, *layer, planes, &film, &linear));
+        let outside = (&out_of_gamut, resolved.exposure);
+        let drawn = Drawn::new(*layer, name.clone(), outside, mean(&film), brightest(&film));
+        Ok(((name, bytes), drawn, part(picture, *layer, planes, &film, &linear)))
+    });
+    let (mut files, mut drawn, mut parts) = (Vec::new(), Vec::new(), Vec::new());
+    for (file, one, part) in encoded.collect::<Result<Vec<_>, miette::Report>>()? {
+        files.push(file);
+        drawn.push(one);
+        parts.push(part);
     }
     if !picture.noise.is_empty() {
         let channels = vec![Channel { name: "Y".to_owned(), values: picture.noise.clone() }];
