@@ -5,12 +5,14 @@ mod cone;
 mod detail;
 mod exchange;
 mod full;
+mod hidden;
 mod lab;
 mod left;
 mod patch;
 mod reach;
 mod region;
 mod rings;
+mod share;
 mod stepped;
 
 pub use bound::Bound;

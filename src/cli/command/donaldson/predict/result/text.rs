@@ -50,10 +50,10 @@ impl PredictResult {
             let [x, y, z] = colour.xyz;
             let [l, a, b] = colour.lab.unwrap_or([f64::NAN; 3]);
             let whiteness = match colour.whiteness {
-                Some(whiteness) if colour.whiteness_is_defined => format!("{whiteness:>10.2}"),
+                Some(whiteness) if colour.whiteness_is_defined => format!(" {whiteness:>9.2}"),
                 _ => format!("{:>10}", "-"),
             };
-            lines.push(format!("{name}{x:>10.4}{y:>10.4}{z:>10.4}{l:>9.3}{a:>9.3}{b:>9.3}{whiteness}"));
+            lines.push(format!("{name} {x:>9.4} {y:>9.4} {z:>9.4} {l:>8.3} {a:>8.3} {b:>8.3}{whiteness}"));
             if let Some([l, a, b]) = colour.lab_standard_uncertainty.filter(|sigma| sigma.iter().any(|s| *s > 0.0)) {
                 lines.push(format!("{:<names$}{:>30}{l:>9.3}{a:>9.3}{b:>9.3}", "", "standard uncertainty"));
             }
