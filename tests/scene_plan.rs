@@ -22,6 +22,11 @@ fn count(usual: usize) -> usize {
     std::env::var("BBRF_SCENES").ok().and_then(|text| text.parse().ok()).unwrap_or(usual)
 }
 
+/// The same where paths are drawn, which takes a hundred times as long.
+fn count_of_paths(usual: usize) -> usize {
+    std::env::var_os("BBRF_SCENES").map_or(usual, |_| count(usual) / 10)
+}
+
 fn unit(v: [f64; 3]) -> [f64; 3] {
     let length = v.iter().map(|x| x * x).sum::<f64>().sqrt();
     v.map(|x| x / length)
@@ -340,7 +345,7 @@ fn has_interface(scene: &Scene) -> bool {
 fn interreflection_is_bounded_to_any_number_of_bounces() {
     let mut random = Random::new(13);
     let (mut ratios, mut bounded, mut unknown) = (Vec::new(), 0, 0);
-    for case in 0..count(60) {
+    for case in 0..count_of_paths(60) {
         let mut scene = random_scene(&mut random);
         scene.sources.retain(|source| !source.is_surround());
         if scene.bounces == Bounces::Most(0) {
@@ -374,7 +379,7 @@ fn what_is_left_out_while_light_goes_round_is_bounded() {
     let mut random = Random::new(15);
     let mut ratios: Vec<(&str, f64)> = Vec::new();
     // Scene 67 has all of its brightest place in a shadow that one of the plans does not draw.
-    for case in 0..count(70) {
+    for case in 0..count_of_paths(70) {
         let mut scene = random_scene(&mut random);
         scene.materials.iter_mut().for_each(|one| one.specular = None);
         scene.bounces = if case % 2 == 0 { Bounces::All } else { Bounces::Most(1 + case as u32 % 4) };
